@@ -17,7 +17,7 @@ import numpy as np
 
 import mbsd
 from benchmarks.rows import Bar, Row
-from mbsd.synthesis.matching import at, feet
+from mbsd.synthesis.target import at, feet
 
 PROBLEM = "four-bar through four points, from a known one"
 POINTS = np.array(

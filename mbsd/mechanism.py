@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from mbsd.analyses.modes import Mode
     from mbsd.analyses.state_space import Linearisation
     from mbsd.derivatives.sensitivities import Sensitivities
-    from mbsd.drawing.of_solution import SkeletonDrawer
+    from mbsd.drawing.drawer import SkeletonDrawer
     from mbsd.dynamics.batch.simulate_many import Simulations
     from mbsd.dynamics.measures.kinds import Measure
     from mbsd.kinematics.batch import Batch
@@ -311,14 +311,14 @@ class Mechanism(Building):
 
     def topology(self) -> Svg:
         """Bodies and joints as a diagram, redundant joints in red; a notebook shows it, ``.save(path)`` writes SVG."""
-        from mbsd.drawing.topology.topology import topology
+        from mbsd.drawing.topology import topology
 
         return topology(self)
 
     @property
     def drawer(self) -> SkeletonDrawer:
         """The drawer of its solutions, for :meth:`mbsd.results.solution.Solution.draw`, ``animate`` and ``view``."""
-        from mbsd.drawing.of_solution import SkeletonDrawer
+        from mbsd.drawing.drawer import SkeletonDrawer
 
         return SkeletonDrawer()
 

@@ -9,7 +9,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mbsd.dealing.voice import Voice
+from mbsd.dealing.manner import Voice
 
 if TYPE_CHECKING:
     from distributed import Client, Security

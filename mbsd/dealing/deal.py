@@ -12,14 +12,11 @@ from concurrent.futures import BrokenExecutor
 from functools import partial
 from typing import Any, NamedTuple
 
-from mbsd.dealing.hand import Group, Hand
+from mbsd.dealing.hand import Group, Hand, stolen, unclaimed
 from mbsd.dealing.identity import Trust, differences, together
-from mbsd.dealing.manner import Kind, Manner
+from mbsd.dealing.manner import Kind, Manner, Voice
 from mbsd.dealing.pools import Gone, Here
-from mbsd.dealing.report import AROUND, Key, read_identity, read_report
-from mbsd.dealing.shares import stolen, unclaimed
-from mbsd.dealing.voice import Voice
-from mbsd.dealing.wrong_answer import WrongAnswer, printable
+from mbsd.dealing.report import AROUND, Key, WrongAnswer, printable, read_identity, read_report
 
 TICK = 0.2
 """Seconds between two looks at the workers while nothing comes."""

@@ -12,8 +12,6 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from mbsd.dealing.wrong_answer import WrongAnswer, printable
-
 AROUND = 4_000_000
 """Bytes of a report beside the results in it."""
 IDENTITY = 100_000
@@ -136,3 +134,18 @@ def _json(answer: Any) -> Any:
         return json.loads(answer)
     except (ValueError, RecursionError) as error:
         raise WrongAnswer(f"its answer cannot be read ({printable(str(error))})") from error
+
+
+LONGEST = 400
+"""Characters of a text from elsewhere that are shown."""
+
+
+class WrongAnswer(Exception):
+    """A worker sent something else than what was ordered; the message tells what. No other worker is to blame."""
+
+
+def printable(text: str, longest: int = LONGEST) -> str:
+    """A text from another machine for a message: one line of printable characters, cut where it is too long."""
+    line = "".join(letter if letter.isprintable() else " " for letter in text[: longest + 1])
+    line = " ".join(line.split())
+    return line if len(text) <= longest else f"{line[:longest]}..."

@@ -1,9 +1,13 @@
-"""The skeleton: links by their joints, joints by the standard symbols, frames, centres of mass, traced points."""
+"""The skeleton: links by their joints, joints by the standard symbols, frames, centres of mass, traced points.
+
+Pictures of one motion share a :class:`Steady`: extent, size of the symbols, sides of ground's signs, turns of springs.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,19 +15,14 @@ import numpy as np
 from mbsd.base.arguments import switch
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
-from mbsd.drawing.canvas import Canvas
+from mbsd.drawing.canvas import Canvas, place_names
 from mbsd.drawing.carriers import GROUND, at_place, on_body
-from mbsd.drawing.inks import body_inks
-from mbsd.drawing.literal import literal
-from mbsd.drawing.look import AXIS_X, AXIS_Y, FAINT, INK, QUIET
-from mbsd.drawing.names import place_names
+from mbsd.drawing.look import AXIS_X, AXIS_Y, FAINT, INK, QUIET, body_inks, literal
 from mbsd.drawing.pose import Pose
+from mbsd.drawing.symbols.contacts import contact_reach, draw_contacts
+from mbsd.drawing.symbols.geometry import Place, free_side, reach, rounded
 from mbsd.drawing.symbols.joints import draw_joint
 from mbsd.drawing.symbols.loads import draw_force, force_reach
-from mbsd.drawing.symbols.outline import rounded
-from mbsd.drawing.symbols.place import Place, free_side
-from mbsd.drawing.symbols.reach import reach
-from mbsd.drawing.symbols.touching import contact_reach, draw_contacts
 from mbsd.drawing.symbols.wheels import rim_of, ring_gear
 from mbsd.model.body import Marker
 from mbsd.model.joint import Joint
@@ -32,6 +31,7 @@ from mbsd.pictures import Picture
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
 
 WIDTH, TALLEST, FLATTEST = 7.0, 7.0, 2.6
 """Width, largest and least height of a figure of our own (inches)."""
@@ -270,3 +270,41 @@ def _finish(ax: Axes, low: np.ndarray, high: np.ndarray, name: str, pose: Pose) 
     ax.set_ylabel("y / m", color=QUIET, fontsize=8.5)
     title = name.replace("_", " ") + (f",  {pose.title}" if pose.title else "")
     ax.set_title(title, loc="left", color=INK, fontsize=11)
+
+
+@dataclass(frozen=True, eq=False)
+class Steady:
+    """Found from some poses of a motion, the first one first."""
+
+    low: np.ndarray
+    high: np.ndarray
+    """(2,) extent of the machine over the whole motion (m)."""
+    unit: float
+    """Unit of its symbols (m)."""
+    sides: dict[str, np.ndarray]
+    coils: dict[str, int]
+    wheels: dict[tuple[str, float], tuple[int, float]]
+    """Teeth and phase (rad) of gears in the first pose, by body and radius."""
+
+    def ready(self, canvas: Canvas, turned: Mapping[str, float]) -> None:
+        """Tell a canvas the turns of springs, and how gears stand whose bodies have turned by angles (rad)."""
+        canvas.coils.update(self.coils)
+        for (body, radius), (teeth, phase) in self.wheels.items():
+            canvas.turned[body, radius] = teeth, phase + teeth * turned[body]
+
+
+def steady_of(m: Model, poses: Sequence[Pose], colours: dict[str, str], recorder: type[Canvas]) -> Steady:
+    """Return the constants of these poses; ``recorder`` is a canvas that needs no axes."""
+    low, high, unit = measure_all(m, poses)
+    sides = steady_sides(m, poses, unit)
+    turns: dict[str, list[int]] = {}
+    wheels: dict[tuple[str, float], tuple[int, float]] = {}
+    for k, pose in enumerate(poses):
+        canvas = recorder(None, unit)
+        draw_on(canvas, m, pose, colours, False, sides)
+        for name, count in canvas.coils.items():
+            turns.setdefault(name, []).append(count)
+        if k == 0:
+            wheels = dict(canvas.wheels)
+    coils = {name: int(np.median(counts)) for name, counts in turns.items()}
+    return Steady(low, high, unit, sides, coils, wheels)

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.drawing.literal import literal
-from mbsd.drawing.look import FAINT, INK, PALETTE, QUIET, WRONG
+from mbsd.drawing.look import FAINT, INK, PALETTE, QUIET, WRONG, literal
 from mbsd.pictures import Picture
 
 MOST_BARS = 12

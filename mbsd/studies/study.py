@@ -23,17 +23,16 @@ from mbsd.dealing.connection import connected
 from mbsd.dependencies.recorder import Recorder
 from mbsd.mechanism import Mechanism
 from mbsd.model.mechanism import Model
-from mbsd.studies.dealt import Deals, by_cluster, by_here, by_processes, manner_of
-from mbsd.studies.identity.content import Content, own_sources
-from mbsd.studies.identity.depends import StudyPlaces, loaded_inputs, root_of
+from mbsd.studies.content import Content, own_sources
+from mbsd.studies.inputs import StudyPlaces, loaded_inputs, root_of
+from mbsd.studies.orders import Deals, by_cluster, by_here, by_processes, manner_of
 from mbsd.studies.points import Point, points_of, refuse_names
+from mbsd.studies.progress import VOICE
 from mbsd.studies.progress import progress as reported
-from mbsd.studies.sent import bytes_of
 from mbsd.studies.simulated import Simulated
 from mbsd.studies.store import Store
 from mbsd.studies.table import pandas_here, refuse_format, refuse_taken, save_table, table_of
-from mbsd.studies.voice import VOICE
-from mbsd.studies.work import Order, Result
+from mbsd.studies.work import Order, Result, bytes_of
 
 if TYPE_CHECKING:
     import pandas

@@ -1,30 +1,42 @@
-"""The paths of many designs of one mechanism: all at once in closed form where that serves, else one by one.
+"""The paths of many designs of one mechanism, all at once in closed form where possible, and their tangents.
 
 A design is a vector of the numbers that vary. It is either the mechanism itself with other lengths and places, or what
 a function of the author builds from them; the latter is solved with the others as long as only places of markers, of
-the traced point and lengths of rods differ.
+the traced point and lengths of rods differ. Other designs are swept one by one; how the path of one of them changes
+with its numbers follows from the differentiated closure, without another sweep:
+
+    J q' = -dPhi/dp;   the point and the angles follow from q'
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import MechanismError
+from mbsd.derivatives.driven.tangents import Inverse
+from mbsd.derivatives.numbers.terms import Along, terms_of
+from mbsd.derivatives.numbers.variants import SECOND, TINY, Variation
 from mbsd.kinematics.batch import parameters
 from mbsd.kinematics.design_sweeps import DesignSweeps, Moved, in_closed_form
 from mbsd.kinematics.march import kinematics_at
+from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.prepare import prepare
 from mbsd.kinematics.prepared import Prepared
+from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model
-from mbsd.numbers.names import Number, changed
-from mbsd.synthesis.built import built
+from mbsd.numbers.names import Number, changed, numbers_named
 from mbsd.synthesis.conditions import Pin, four_bar, grashof_excess, pins, transmission_angles
-from mbsd.synthesis.path_tangents import path_of, tangents_of_path
-from mbsd.synthesis.varied import Varied
+from mbsd.synthesis.variables import Varied, built
+
+if TYPE_CHECKING:
+    from mbsd.synthesis.variables import Value, Varied
+
 
 Build = Callable[..., Model]
 KEPT = 100
@@ -183,9 +195,9 @@ class Designs:
         """Return True if the design x (k,) is the mechanism itself but for places and rods."""
         own, other = self.ready.packed, pack(self.model(x))
         other.settle_laws(float(self.grids[True][0]), float(self.grids[True][-1]))
-        return _numbers(own, self.grids[True]) == _numbers(other, self.grids[True]) and list(own.body_names) == list(
-            other.body_names
-        )
+        if list(own.body_names) != list(other.body_names):
+            return False
+        return _fixed_numbers(own, self.grids[True]) == _fixed_numbers(other, self.grids[True])
 
     def solved(self, x: np.ndarray, grid: np.ndarray) -> tuple[Model, Prepared, np.ndarray]:
         """The mechanism of one design x (k,), made ready, and its poses (T, nb, 3); the last ones are kept."""
@@ -216,10 +228,83 @@ def _unmoved(m: Model, value: float) -> None:
     """Leave the model; designs are moved as vectors."""
 
 
-def _numbers(packed: Packed, grid: np.ndarray) -> tuple[bytes, ...]:
+def _fixed_numbers(packed: Packed, grid: np.ndarray) -> tuple[bytes, ...]:
     """All of a mechanism but places of markers, lengths of rods, masses and forces."""
     system = packed.system
     axes = system.marker_axis[: 2 * len(packed.joints)]
     kept = (axes, system.angle_offset, system.special, system.numbers, system.point, system.angle, system.slot)
     tables = (*kept, system.along, system.distance, packed.markers, system.marker_body[: len(axes)])
     return (*(np.ascontiguousarray(part).tobytes() for part in tables), packed.drives(grid).tobytes())
+
+
+class Family(Protocol):
+    """Designs by their numbers, as far as tangents need them."""
+
+    m: Model
+    varied: Varied
+    build: Any
+    trace: str
+    turned: list[str]
+
+    def model(self, x: np.ndarray) -> Model:
+        """The mechanism of one design x (k,)."""
+        ...
+
+    def solved(self, x: np.ndarray, grid: np.ndarray) -> tuple[Model, Prepared, np.ndarray]:
+        """It, made ready, and its poses (T, nb, 3)."""
+        ...
+
+
+def path_of(packed: Packed, marker: Marker, q: np.ndarray) -> np.ndarray:
+    """(T, 2) of a point at poses q (T, nb, 3)."""
+    body = packed.body_names.index(marker.body.name)
+    x0, y0 = np.array([marker.x, marker.y]) - packed.com[body]
+    c, s = np.cos(q[:, body, 2]), np.sin(q[:, body, 2])
+    return q[:, body, :2] + np.column_stack([c * x0 - s * y0, s * x0 + c * y0])
+
+
+def tangents_of_path(family: Family, x: np.ndarray, grid: np.ndarray) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """(k, T, 2) and, by body, (k, T): how the point and the angles of a design x (k,) change with its numbers."""
+    m, ready, q = family.solved(x, grid)
+    packed, span = ready.packed, (float(grid[0]), float(grid[-1]))
+    terms = terms_of(packed, span, loads=False)
+    flat = np.ascontiguousarray(q.reshape(len(grid), -1))
+    still = np.zeros_like(flat)
+    along = Along(grid, flat, still, still, np.zeros((len(grid), len(packed.ws.phi))))
+    inverse = Inverse(terms, along, bool(ready.mobility.redundant_rows))
+    variation = Variation(m, terms, span, lambda m, packed: assemble(m, packed, span[0]), loads=False)
+    paths = np.zeros((len(x), len(grid), 2))
+    angles = {body: np.zeros((len(x), len(grid))) for body in family.turned}
+    for k, number in enumerate(_numbers(family, m, x)):
+        variants = variation.of(number, SECOND, TINY)
+        slope = inverse.solved(-variants.slope(lambda variant: variant.terms.rows(along)[0]), number.name, 1e-6)
+        for weight, variant in zip(variants.weights, variants.variants, strict=True):
+            moved = (flat + variant.offset * variants.step * slope).reshape(q.shape)
+            paths[k] += weight / variants.step * path_of(variant.terms.packed, variant.traces[family.trace], moved)
+        for body, rows in angles.items():
+            rows[k] = slope[:, 3 * packed.body_names.index(body) + 2]
+    return paths, angles
+
+
+def _numbers(family: Family, m: Model, x: np.ndarray) -> list[Number]:
+    """The numbers of a design as those of its mechanism, or of the author's function."""
+    if family.build is None:
+        names = []
+        for name, _, single in family.varied.columns():
+            names += [name] if single else [f"{name}.x", f"{name}.y"]
+        return numbers_named(m, names)
+
+    def put(m: Model, value: float) -> None:
+        raise AssertionError("it is built")
+
+    def built(k: int, value: float) -> Model:
+        return family.model(np.where(np.arange(len(x)) == k, value, x))
+
+    names = [f"{name} {k}" for k, name in enumerate(_columns(family.varied))]
+    reach = (family.varied.high - family.varied.low).tolist()
+    return [Number(name, float(x[k]), put, partial(built, k), reach=reach[k]) for k, name in enumerate(names)]
+
+
+def _columns(varied: Varied) -> list[str]:
+    values: dict[str, Value] = varied.values(np.zeros(varied.count))
+    return [name for name, value in values.items() for _ in range(len(value) if isinstance(value, tuple) else 1)]

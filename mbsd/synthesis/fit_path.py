@@ -15,11 +15,10 @@ from mbsd.base.names import Suggesting, no_such, shown
 from mbsd.base.users_function import users_progress
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model, Start, new_name, own_body
-from mbsd.synthesis.built import refuse_build
 from mbsd.synthesis.designs import Build, Designs
 from mbsd.synthesis.search import Search
 from mbsd.synthesis.target import Target
-from mbsd.synthesis.varied import Value, refuse_names, varied
+from mbsd.synthesis.variables import Value, refuse_build, refuse_names, varied
 
 COARSE, FINE = 120, 360
 """Steps of a motion in the search and in the fit."""

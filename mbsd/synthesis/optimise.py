@@ -18,8 +18,7 @@ from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import Suggesting, no_such, shown
 from mbsd.base.users_function import users_progress
 from mbsd.model.mechanism import Model
-from mbsd.synthesis.moves import Moves, Tried
-from mbsd.synthesis.wishes import Bounds, Condition, bounds_of, conditions_of
+from mbsd.synthesis.evaluation import Bounds, Condition, Moves, Tried, bounds_of, conditions_of
 
 METHODS = ("SLSQP", "trust-constr")
 MOST = 100

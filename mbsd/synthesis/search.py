@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from mbsd.synthesis.descents import descended
 from mbsd.synthesis.designs import Designs, Paths
-from mbsd.synthesis.residuals import Residuals
+from mbsd.synthesis.least_squares import Residuals, descended
 from mbsd.synthesis.target import Target
 
 if TYPE_CHECKING:

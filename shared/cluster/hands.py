@@ -9,8 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from mbsd.dealing.report import Report, encoded
-from mbsd.dealing.wrong_answer import printable
+from mbsd.dealing.report import Report, encoded, printable
 from shared.cluster.contents import Contents
 from shared.stage.errors import UserError
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from mbsd.dealing.voice import Voice
+from mbsd.dealing.manner import Voice
 from shared.stage.console import duration, say, warn
 from shared.stage.errors import UserError
 from shared.stage.face import to_run

@@ -9,8 +9,7 @@ import pytest
 
 from mbsd import Mechanism, constant_rate
 from mbsd.base.quantity import written
-from mbsd.drawing.animation.picture.scales import LONGEST, scales_of
-from mbsd.drawing.animation.quantities.arrows import Arc, Arrow
+from mbsd.drawing.animation.arrows import LONGEST, Arc, Arrow, scales_of
 from mbsd.drawing.animation.words import round_below
 from tests.drawing.test_animation import four_bar, scene
 from tools.models.contact_models import ball
@@ -100,7 +99,7 @@ def test_energy_flows_from_the_motor_to_the_slider() -> None:
 
 
 def test_impacts_ring_at_the_floor() -> None:
-    from mbsd.drawing.animation.picture.impacts import impacts_of
+    from mbsd.drawing.animation.trails import impacts_of
 
     drawn = scene(ball(0.5).simulate(2.0))
     impacts = impacts_of(drawn)

@@ -10,9 +10,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
+from mbsd.drawing.animation.bars import Bars
 from mbsd.drawing.animation.brush import Brush
-from mbsd.drawing.animation.picture.bars import Bars
-from mbsd.drawing.animation.quantities.flow import Balance
+from mbsd.drawing.animation.flow import Balance
 
 DPI = 100.0
 

@@ -13,9 +13,8 @@ from hypothesis import strategies as st
 
 from mbsd import Mechanism, SingularPoseError, Solution, constant_rate
 from mbsd.drawing.carriers import Frames
+from mbsd.drawing.moving_skeleton import Moving, drawn_at, moving, resampled
 from mbsd.drawing.pose import tracks_of
-from mbsd.drawing.view.carried import Moving, drawn_at, moving
-from mbsd.drawing.view.curves import resampled
 from tools.models import guided, linkages, random_linkages
 
 SLACK = 0.02

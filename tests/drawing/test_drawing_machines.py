@@ -11,7 +11,7 @@ from matplotlib.path import Path
 
 from mbsd import Mechanism, constant_rate
 from mbsd.cams import Lift, flat_cam, roller_cam
-from mbsd.drawing.inks import INKS, apart
+from mbsd.drawing.look import INKS, apart
 
 LIFT = Lift.of((math.pi / 2, 0.02, "cycloidal"), (math.pi / 2, 0.02), (math.pi, 0.0, "3-4-5"))
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism
+from mbsd.drawing.moving_skeleton import moving
 from mbsd.drawing.pose import pose_of, tracks_of
 from mbsd.drawing.skeleton import measure
 from mbsd.drawing.strokes import strokes_of
-from mbsd.drawing.view.carried import moving
 from mbsd.results.solution import Solution
 
 LENGTH = 0.5

@@ -9,7 +9,7 @@ import pytest
 
 from mbsd import Mechanism, Solution, constant_rate, curve
 from mbsd.drawing.pose import tracks_of
-from mbsd.drawing.symbols.ways import MOST, curve_way, surface_way
+from mbsd.drawing.symbols.surfaces import MOST, curve_way, surface_way
 
 RADIUS, SPEED, END = 0.1, 2.0, 1.0
 

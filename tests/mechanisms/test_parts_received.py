@@ -11,7 +11,7 @@ import cadquery
 import msgspec
 import pytest
 
-from mbsd.dealing.wrong_answer import WrongAnswer
+from mbsd.dealing.report import WrongAnswer
 from mechanisms.stages.loading.inputs import Inputs
 from mechanisms.stages.parts.bodies import described_body
 from mechanisms.stages.parts.on_cluster import answer

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, Motion, Solution, function
-from mbsd.drawing.animation.between import at_times
+from mbsd.drawing.animation.clip import at_times
 from mechanisms.stages.solve import solving
 from mechanisms.stages.solve.motion_file import to_motion
 from shared.contract.consistency import refuse_inconsistent_motion

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, constant_rate
-from mbsd.synthesis.designs import Designs
-from mbsd.synthesis.path_tangents import tangents_of_path
-from mbsd.synthesis.residuals import Residuals
+from mbsd.synthesis.designs import Designs, tangents_of_path
+from mbsd.synthesis.least_squares import Residuals
 from mbsd.synthesis.target import Target
-from mbsd.synthesis.varied import varied
+from mbsd.synthesis.variables import varied
 
 GRID = np.linspace(0.0, 1.0, 25)
 

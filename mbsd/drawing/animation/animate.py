@@ -14,10 +14,10 @@ from mbsd.base.names import no_such, shown
 from mbsd.base.users_function import users_progress
 from mbsd.drawing.animation.clip import HOLD, clip_of
 from mbsd.drawing.animation.encoders import ffmpeg, held, write_gif, write_mp4
-from mbsd.drawing.animation.picture.page import Page
+from mbsd.drawing.animation.page import Page
 from mbsd.drawing.animation.scene import scene_of
 from mbsd.drawing.animation.words import EVERYTHING, QUANTITIES
-from mbsd.drawing.literal import literal
+from mbsd.drawing.look import literal
 from mbsd.pictures import Animation
 from mbsd.results.solution import Solution
 

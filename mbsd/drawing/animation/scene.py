@@ -8,17 +8,13 @@ from functools import cached_property
 
 import numpy as np
 
-from mbsd.drawing.animation.between import at_times
+from mbsd.drawing.animation.arrows import Arc, Arrow, force_arrows, motion_arrows, reaction_arrows
 from mbsd.drawing.animation.brush import Brush, Mark, View, fresh
-from mbsd.drawing.animation.clip import Clip
-from mbsd.drawing.animation.quantities.arrows import Arc, Arrow
-from mbsd.drawing.animation.quantities.flow import Balance, balance_of, flow_arrows
-from mbsd.drawing.animation.quantities.loads import force_arrows, reaction_arrows
-from mbsd.drawing.animation.quantities.motions import motion_arrows
-from mbsd.drawing.inks import body_inks
+from mbsd.drawing.animation.clip import Clip, at_times
+from mbsd.drawing.animation.flow import Balance, balance_of, flow_arrows
+from mbsd.drawing.look import body_inks
 from mbsd.drawing.pose import Pose, Tracks, tracks_of
-from mbsd.drawing.skeleton import draw_on
-from mbsd.drawing.steady import Steady, steady_of
+from mbsd.drawing.skeleton import Steady, draw_on, steady_of
 from mbsd.results.solution import Solution
 
 LOOKED_AT = 24

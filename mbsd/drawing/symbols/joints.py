@@ -14,10 +14,15 @@ import numpy as np
 from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.carriers import GROUND, along_axes, along_line, at_place, on_body
 from mbsd.drawing.look import INK, MOVED, PAPER, QUIET, WRONG
-from mbsd.drawing.symbols.cam import draw_cam
-from mbsd.drawing.symbols.geneva import draw_geneva
-from mbsd.drawing.symbols.place import Place
-from mbsd.drawing.symbols.rolling import draw_point_on_curve, draw_rack, draw_rolling_disc, draw_rolling_on_curve
+from mbsd.drawing.symbols.geometry import Place, rounded
+from mbsd.drawing.symbols.higher_pairs import (
+    draw_cam,
+    draw_geneva,
+    draw_point_on_curve,
+    draw_rack,
+    draw_rolling_disc,
+    draw_rolling_on_curve,
+)
 from mbsd.drawing.symbols.wheels import draw_belt, draw_gear_pair
 
 PIN = 0.62
@@ -78,8 +83,6 @@ def _prismatic(canvas: Canvas, place: Place) -> None:
 
 
 def _slot(canvas: Canvas, place: Place) -> None:
-    from mbsd.drawing.symbols.outline import rounded
-
     u = canvas.unit
     a, b = place.range(1.6 * u)
     edge = place.colours.get(place.joint.i.body.name, INK)

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from mbsd.base.arguments import positive_number
 from mbsd.base.errors import ModelError
-from mbsd.machines.body.mass_properties import MassProperties, combined
 from mbsd.machines.body.segments import BALL, HEEL, LENGTHS, WINTER, Segment, SegmentTable
 
 GRIP = 0.5
@@ -140,3 +140,32 @@ class Figure:
         length = segment.length * self.height
         place = segment.start * self.height + segment.com * length
         return MassProperties(mass, (place, 0.0), mass * (segment.gyration * length) ** 2)
+
+
+@dataclass(frozen=True)
+class MassProperties:
+    """Mass properties of a rigid body in the plane: mass (kg), centre of mass (m), inertia about it (kg m^2)."""
+
+    mass: float
+    com: tuple[float, float]
+    inertia: float
+
+    def placed(self, x: float, y: float, angle: float = 0.0) -> MassProperties:
+        """The same body turned by ``angle`` (rad) about the origin and moved by (x, y) (m)."""
+        c, s = math.cos(angle), math.sin(angle)
+        u, v = self.com
+        return MassProperties(self.mass, (x + c * u - s * v, y + s * u + c * v), self.inertia)
+
+    def times(self, count: float) -> MassProperties:
+        """So many of them side by side, across the plane; half of what is the same on either side."""
+        return MassProperties(count * self.mass, self.com, count * self.inertia)
+
+
+def combined(parts: Iterable[MassProperties]) -> MassProperties:
+    """One rigid body of several."""
+    pieces = list(parts)
+    mass = sum(piece.mass for piece in pieces)
+    x = sum(piece.mass * piece.com[0] for piece in pieces) / mass
+    y = sum(piece.mass * piece.com[1] for piece in pieces) / mass
+    inertia = sum(piece.inertia + piece.mass * math.dist(piece.com, (x, y)) ** 2 for piece in pieces)
+    return MassProperties(mass, (x, y), inertia)

@@ -22,9 +22,8 @@ from dataclasses import dataclass
 
 from mbsd.base.arguments import finite_number, number_pair
 from mbsd.base.errors import ModelError
-from mbsd.machines.body.chain import add_barbell, add_lifter, ends_given, not_below
+from mbsd.machines.body.chain import Tempo, add_barbell, add_lifter, ends_given, not_below, repetition
 from mbsd.machines.body.figure import Figure
-from mbsd.machines.body.repetition import Tempo, repetition
 from mbsd.mechanism import Mechanism
 from mbsd.model.laws.polynomial import polynomial
 

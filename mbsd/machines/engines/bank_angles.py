@@ -23,8 +23,7 @@ from mbsd.base.errors import ModelError
 from mbsd.machines.engines.engine import engine
 from mbsd.machines.engines.firing import firing
 from mbsd.machines.engines.free_forces import FreeForces, free_forces
-from mbsd.machines.engines.layout import Layout
-from mbsd.machines.engines.layouts import INLINE_THROWS, even_split, vee
+from mbsd.machines.engines.layout import INLINE_THROWS, Layout, even_split, vee
 from mbsd.model.cylinders.cycle import GasCycle
 
 ORDERS = (1, 2, 4, 6)

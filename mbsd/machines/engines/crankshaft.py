@@ -12,8 +12,7 @@ import numpy as np
 
 from mbsd.base.arguments import not_negative_number
 from mbsd.base.errors import ModelError
-from mbsd.machines.engines.layout import Layout
-from mbsd.machines.engines.throws import throws
+from mbsd.machines.engines.layout import Layout, throws
 from mbsd.mechanism import Mechanism
 from mbsd.model.body import Body
 

@@ -34,10 +34,8 @@ from mbsd.base.errors import ModelError
 from mbsd.machines.engines.block import Block
 from mbsd.machines.engines.crankshaft import ShaftMasses, crankshaft, share_of
 from mbsd.machines.engines.firing import firing
-from mbsd.machines.engines.layout import Layout
+from mbsd.machines.engines.layout import SAME, Layout, named
 from mbsd.machines.engines.master_rod import NO_RING, Knuckle, MasterRod, Ring, knuckles, ring_of
-from mbsd.machines.engines.named import named
-from mbsd.machines.engines.throws import SAME
 from mbsd.machines.engines.valve_train import ValveTrain, valve_train
 from mbsd.mechanism import Mechanism
 from mbsd.model.body import Body

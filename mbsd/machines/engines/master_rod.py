@@ -24,8 +24,7 @@ import numpy as np
 
 from mbsd.base.arguments import finite_number, not_negative_number, positive_number
 from mbsd.base.errors import ModelError
-from mbsd.machines.engines.layout import Layout
-from mbsd.machines.engines.throws import SAME, throws
+from mbsd.machines.engines.layout import SAME, Layout, throws
 from mbsd.model.cylinders.articulated_motion import ArticulatedMotion
 
 UPRIGHT = 0.5 * math.pi

@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from mbsd import Solution
-from mbsd.drawing.view.carried import Moving, moving
-from mbsd.drawing.view.redrawn import redrawn
+from mbsd.drawing.moving_skeleton import Moving, moving, redrawn
 from mechanisms.stages.solve.motion_file import to_motion
 from mechanisms.stages.solve.skeleton_file import moving_of
 from render.view.document import encode

@@ -9,10 +9,10 @@ import pytest
 from scipy.optimize import root
 
 from mbsd import ModelError
+from mbsd.machines.body.chain import Tempo
 from mbsd.machines.body.figure import Figure
 from mbsd.machines.body.hip_thrust import hip_thrust, placed_on_bench
 from mbsd.machines.body.lift import Lift, lifted
-from mbsd.machines.body.repetition import Tempo
 from mbsd.machines.body.segments import DE_LEVA_WOMEN
 
 G = np.array([0.0, -9.80665])

@@ -7,8 +7,7 @@ import math
 import pytest
 
 from mbsd import ModelError
-from mbsd.machines.body.figure import Figure
-from mbsd.machines.body.mass_properties import combined
+from mbsd.machines.body.figure import Figure, combined
 from mbsd.machines.body.segments import ARMS_HEAD_TRUNK, DE_LEVA_MEN, DE_LEVA_WOMEN, TABLES, WINTER, SegmentTable
 
 LIMBS = ("shank", "thigh", "trunk", "upper_arm", "forearm")

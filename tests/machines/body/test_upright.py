@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from mbsd import ModelError
+from mbsd.machines.body.chain import Tempo
 from mbsd.machines.body.figure import Figure
 from mbsd.machines.body.hip_thrust import hip_thrust
 from mbsd.machines.body.lift import Lift, lifted, peaks
-from mbsd.machines.body.repetition import Tempo
-from mbsd.machines.body.upright import deadlift, squat
+from mbsd.machines.body.squat_and_deadlift import deadlift, squat
 
 WHO, LOAD = Figure(), 65.0
 LIFTS = {"squat": squat, "deadlift": deadlift, "hip thrust": hip_thrust}

@@ -14,8 +14,7 @@ from mbsd import ModelError, four_stroke
 from mbsd.machines.engines.engine import engine
 from mbsd.machines.engines.firing import firing
 from mbsd.machines.engines.free_forces import free_forces
-from mbsd.machines.engines.layout import Layout, layout
-from mbsd.machines.engines.named import NAMES, named
+from mbsd.machines.engines.layout import NAMES, Layout, layout, named
 from mbsd.results.solution import Solution
 
 CASE = json.loads((Path(__file__).parents[2] / "published/reference/engine_free_forces.json").read_text())

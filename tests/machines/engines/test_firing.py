@@ -9,8 +9,7 @@ import pytest
 
 from mbsd import ModelError
 from mbsd.machines.engines.firing import firing
-from mbsd.machines.engines.layout import Layout
-from mbsd.machines.engines.layouts import INLINE_THROWS, boxer, even_split, fan, inline, vee
+from mbsd.machines.engines.layout import INLINE_THROWS, Layout, boxer, even_split, fan, inline, vee
 
 
 @pytest.mark.parametrize(

@@ -10,10 +10,8 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, ModelError, constant_rate
-from mbsd.machines.engines.free_forces import free_forces, rotating_forces
-from mbsd.machines.engines.layout import Layout, layout
-from mbsd.machines.engines.layouts import INLINE_THROWS, boxer, even_split, fan, inline, staggered, vee
-from mbsd.machines.engines.piston_harmonics import piston_harmonics
+from mbsd.machines.engines.free_forces import free_forces, piston_harmonics, rotating_forces
+from mbsd.machines.engines.layout import INLINE_THROWS, Layout, boxer, even_split, fan, inline, layout, staggered, vee
 
 CASE = json.loads((Path(__file__).parents[2] / "published/reference/engine_free_forces.json").read_text())
 CROSS, FLAT = (0, 90, 270, 180), (0, 180, 180, 0)

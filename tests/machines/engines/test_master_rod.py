@@ -13,8 +13,8 @@ from mbsd import Mechanism, ModelError, four_stroke
 from mbsd.machines.engines.block import Block, mounts_of_frequency
 from mbsd.machines.engines.engine import engine
 from mbsd.machines.engines.firing import firing
+from mbsd.machines.engines.layout import named
 from mbsd.machines.engines.master_rod import MasterRod
-from mbsd.machines.engines.named import named
 
 BORE, STROKE, ROD, SPEED = 0.1, 0.1, 0.22, 100.0
 THROW, AROUND = STROKE / 2, 0.056

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from mbsd import ModelError, four_stroke
-from mbsd.machines.engines.block import Block, Mount, mounts_of_frequency
+from mbsd.machines.engines.block import Block, Mount, mount_response, mounts_of_frequency
 from mbsd.machines.engines.engine import engine
-from mbsd.machines.engines.mount_response import mount_response
 
 MASS, INERTIA, FREQUENCY, ZETA = 150.0, 4.0, 8.0, 0.1
 PLACES = ((-0.30, -0.10), (0.30, -0.10), (0.0, 0.20))

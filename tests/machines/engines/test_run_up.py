@@ -12,9 +12,8 @@ from scipy.integrate import solve_ivp
 from scipy.special import fresnel
 
 from mbsd import ModelError
-from mbsd.machines.engines.block import Block, mounts_of_frequency
+from mbsd.machines.engines.block import Block, mount_response, mounts_of_frequency
 from mbsd.machines.engines.engine import engine
-from mbsd.machines.engines.mount_response import mount_response
 from mbsd.machines.engines.run_up import run_up
 
 PLACES = ((-0.30, -0.10), (0.30, -0.10), (0.0, 0.20))

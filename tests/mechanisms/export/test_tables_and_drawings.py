@@ -13,7 +13,7 @@ import pytest
 from ezdxf.filemanagement import read
 
 from mbsd import Mechanism, constant_rate
-from mbsd.drawing.inks import body_inks
+from mbsd.drawing.look import body_inks
 from mechanisms.stages.export import stage
 from mechanisms.stages.export.assembly import Wanted
 from mechanisms.stages.export.drawings import dxf, svg

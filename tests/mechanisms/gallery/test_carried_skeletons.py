@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mbsd.drawing.view.carried import moving
+from mbsd.drawing.moving_skeleton import moving
 from mechanisms.stages.loading import loading
 from mechanisms.stages.solve import solving
 from shared.stage.paths import mechanism_names

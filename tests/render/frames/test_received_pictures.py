@@ -13,7 +13,7 @@ import msgspec
 import pytest
 from PIL import Image
 
-from mbsd.dealing.wrong_answer import WrongAnswer
+from mbsd.dealing.report import WrongAnswer
 from render.blender.picture_file import SIGNATURE, fault_of, most_bytes, name_of, without_notes
 from render.frames import cluster
 from render.frames.cluster import Made

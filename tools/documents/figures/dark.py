@@ -9,7 +9,7 @@ import matplotlib as mpl
 from matplotlib.colors import to_hex
 
 from mbsd.drawing import look
-from mbsd.drawing.inks import on_dark
+from mbsd.drawing.look import on_dark
 
 COLOUR = re.compile(r"#[0-9a-f]{6}\b")
 PAPER = "#0d1117"

@@ -1,7 +1,7 @@
 """A GIF of docs/ on dark paper: its tables of colours exchanged, every pixel as it is.
 
 Edges are drawn soft, so a table has all that lies between an ink and white. As white becomes the dark paper and inks
-become what :func:`mbsd.drawing.inks.on_dark` says, what lies between them stays in between: its lightness L becomes a
+become what :func:`mbsd.drawing.look.on_dark` says, what lies between them stays in between: its lightness L becomes a
 broken line through (1, paper), (:data:`INK`, 1.16 - 0.8 INK) and (0, 1.16).
 
 Source: W3C, Graphics Interchange Format, version 89a.
@@ -13,7 +13,7 @@ from cmath import phase, rect
 from functools import cache
 from math import degrees, radians
 
-from mbsd.drawing.inks import hex_of, lch_of
+from mbsd.drawing.look import hex_of, lch_of
 from tools.documents.figures.dark import PAPER
 
 INK = 0.68

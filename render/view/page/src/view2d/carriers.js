@@ -1,4 +1,4 @@
-/** Where strokes and names are at a moment: what carries them is told in mbsd/drawing/view/carried.py. */
+/** Where strokes and names are at a moment: what carries them is told in mbsd/drawing/moving_skeleton.py. */
 
 /**
  * @typedef {{kind: "ground" | "body" | "place" | "line" | "shapes", ends: import("../data/motion.js").End[]}} Carrier

@@ -1,5 +1,5 @@
 // Plays a skeleton on a canvas: {name, unit, low, high, t, loops, bodies: {name: [x, y, theta]}, inks: {name: [on light, on dark]}, times, strokes, names}.
-// What carries a stroke is stated in carriers.py. Plain JavaScript, no libraries.
+// Where strokes are at a moment is in carriers.js, which stands before this text in a page. Plain JavaScript, no libraries.
 (function (root, data) {
   "use strict";
   const LIGHT = { ink: "#20252b", quiet: "#5d6670", paper: "#ffffff", faint: "#e9ecef", driver: "#c2410c", load: "#4b5563", wrong: "#c81e1e" };
@@ -10,55 +10,26 @@
   const seconds = data.loops ? 4 : Math.min(Math.max(span, 2), 12), digits = Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(span))));
   let t = start, playing = !matchMedia("(prefers-reduced-motion: reduce)").matches, last = 0, held = 0, scale = 1, middle = [0, 0];
 
-  function pose(body, at) {
-    const track = data.bodies[body];
-    if (!track) return [0, 0, 0];
+  /** The motion at a moment, as carriers.js needs it. */
+  function motionAt(t) {
     let low = 0, high = data.t.length - 2;
-    while (low < high) { const half = (low + high + 1) >> 1; if (data.t[half] <= at) low = half; else high = half - 1; }
-    const part = Math.min(Math.max((at - data.t[low]) / (data.t[low + 1] - data.t[low] || 1), 0), 1);
-    return track.map((values) => values[low] + part * (values[low + 1] - values[low]));
+    while (low < high) { const half = (low + high + 1) >> 1; if (data.t[half] <= t) low = half; else high = half - 1; }
+    const part = Math.min(Math.max((t - data.t[low]) / (data.t[low + 1] - data.t[low] || 1), 0), 1);
+    const body = (name) => {
+      if (!data.bodies[name]) return { x: 0, y: 0, theta: 0 };
+      const [x, y, theta] = data.bodies[name].map((values) => values[low] + part * (values[low + 1] - values[low]));
+      return { x, y, theta };
+    };
+    const place = (end) => {
+      const { x, y, theta } = body(end.body), c = Math.cos(theta), s = Math.sin(theta);
+      return [x + c * end.x - s * end.y, y + s * end.x + c * end.y];
+    };
+    return { t, body, place };
   }
-  function place(end, at) {
-    const [x, y, theta] = pose(end[0], at), c = Math.cos(theta), s = Math.sin(theta);
-    return [x + c * end[1] - s * end[2], y + s * end[1] + c * end[2]];
-  }
-  function turn(points, from, to, angle) {
-    const c = Math.cos(angle), s = Math.sin(angle), out = [];
-    for (let k = 0; k < points.length; k += 2) {
-      const u = points[k] - from[0], v = points[k + 1] - from[1];
-      out.push(to[0] + c * u - s * v, to[1] + s * u + c * v);
-    }
-    return out;
-  }
-  function moved(one) {
-    const [kind, ...ends] = one.by;
-    if (kind === "body") {
-      const a = pose(ends[0][0], start), b = pose(ends[0][0], t);
-      return turn(one.points, a, b, b[2] - a[2]);
-    }
-    if (kind === "place") return turn(one.points, place(ends[0], start), place(ends[0], t), 0);
-    if (kind === "line") {
-      const [a, b] = ends.map((end) => place(end, start)), [c, d] = ends.map((end) => place(end, t)), out = [];
-      const before = Math.hypot(b[0] - a[0], b[1] - a[1]), after = Math.hypot(d[0] - c[0], d[1] - c[1]);
-      if (!before || !after) return turn(one.points, a, c, 0);
-      const p = (b[0] - a[0]) / before, q = (b[1] - a[1]) / before, r = (d[0] - c[0]) / after, s = (d[1] - c[1]) / after;
-      for (let k = 0; k < one.points.length; k += 2) {
-        const x = one.points[k] - a[0], y = one.points[k + 1] - a[1], u = (x * p + y * q) * after / before, v = y * p - x * q;
-        out.push(c[0] + u * r - v * s, c[1] + u * s + v * r);
-      }
-      return out;
-    }
-    if (kind === "shapes") {
-      let k = 0;
-      while (k + 2 < data.times.length && data.times[k + 1] <= t) k++;
-      const part = Math.min(Math.max((t - data.times[k]) / (data.times[k + 1] - data.times[k] || 1), 0), 1);
-      return one.shapes[k].map((value, n) => (1 - part) * value + part * one.shapes[k + 1][n]);
-    }
-    return one.points;
-  }
+  const first = motionAt(start);
   const pixel = (x, y) => [middle[0] + scale * (x - (data.low[0] + data.high[0]) / 2), middle[1] - scale * (y - (data.low[1] + data.high[1]) / 2)];
   function draw() {
-    const colours = dark.matches ? DARK : LIGHT;
+    const colours = dark.matches ? DARK : LIGHT, motion = motionAt(t);
     const of = (role) => role.startsWith("body:") ? (data.inks[role.slice(5)] || [])[dark.matches ? 1 : 0] || colours.ink : colours[role] || colours.ink;
     const ratio = Math.min(devicePixelRatio || 1, 2), width = canvas.clientWidth, height = canvas.clientHeight, pad = 3 * data.unit;
     canvas.width = width * ratio;
@@ -78,7 +49,7 @@
       g.stroke();
     }
     for (const one of data.strokes) {
-      const points = moved(one), line = one.width * 1.15;
+      const points = moved(one.points, one, motion, first, data.times), line = one.width * 1.15;
       g.beginPath();
       for (let k = 0; k < points.length; k += 2) g.lineTo(...pixel(points[k], points[k + 1]));
       if (one.closed) g.closePath();
@@ -91,7 +62,7 @@
     g.textBaseline = "middle";
     const taken = [];
     for (const one of data.names) {
-      const at = moved(one), [x, y] = pixel(at[0], at[1]), off = one.off * scale * 0.75 + 3, w = g.measureText(one.text).width;
+      const at = moved(one.points, one, motion, first, data.times), [x, y] = pixel(at[0], at[1]), off = one.off * scale * 0.75 + 3, w = g.measureText(one.text).width;
       const sides = [[x + off, y - off - 4], [x + off, y + off + 6], [x - off - w, y - off - 4], [x - off - w, y + off + 6], [x - w / 2, y - 2 * off - 6]];
       const free = sides.find(([a, b]) => !taken.some(([c, d, e]) => a < c + e + 4 && c < a + w + 4 && Math.abs(b - d) < 15)) || sides[0];
       taken.push([...free, w]);

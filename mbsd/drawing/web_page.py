@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import json
 import os
+from dataclasses import asdict
 from importlib import resources
 from typing import Any
 
@@ -45,6 +46,7 @@ output {{ min-width: 62px; text-align: right; font-variant-numeric: tabular-nums
 <div><button type="button"></button>
 <input type="range" min="0" max="1000" step="1" aria-label="Time"><output></output></div>
 <script>
+{carriers}
 {player}(document.body, {data});
 </script></body></html>
 """
@@ -57,13 +59,18 @@ def view(sol: Solution, path: str | os.PathLike[str] | None, height: float) -> V
         raise ModelError(f"{sol.mechanism.name}: view: height is {height:g} pixels; give 120 or more")
     if len(sol.t) < 2:
         raise ModelError(f"{sol.mechanism.name}: the solution has one time; view() shows a motion, draw() a pose")
-    player = resources.files("mbsd.drawing").joinpath("player.js").read_text("utf-8").strip()
+    carriers, player = (_script(name) for name in ("carriers.js", "player.js"))
     data = json.dumps(_data(sol), separators=(",", ":"), ensure_ascii=False).replace("</", "<\\/")
     title = html.escape(sol.mechanism.name.replace("_", " "))
-    page = PAGE.format(title=title, player=player.replace("</", "<\\/"), data=data)
+    page = PAGE.format(title=title, carriers=carriers.replace("export ", ""), player=player, data=data)
     if path is not None:
         write_whole(path, page.encode())
     return View(page, round(height))
+
+
+def _script(name: str) -> str:
+    """Return a script of this package, as it may stand in a page."""
+    return resources.files("mbsd.drawing").joinpath(name).read_text("utf-8").strip().replace("</", "<\\/")
 
 
 def _data(sol: Solution) -> dict[str, Any]:
@@ -93,8 +100,8 @@ def _data(sol: Solution) -> dict[str, Any]:
                 "alpha": carried.stroke.alpha,
                 "width": carried.stroke.width,
                 "dash": list(carried.stroke.dash),
-                "by": _by(carried.carrier),
-                "shapes": [_short(shape.ravel()) for shape in carried.shapes],
+                "carrier": _carrier(carried.carrier),
+                "shapes": _short(np.ravel(carried.shapes)),
             }
             for carried in sorted(skeleton.strokes, key=lambda carried: carried.stroke.order)
         ],
@@ -104,15 +111,15 @@ def _data(sol: Solution) -> dict[str, Any]:
                 "points": _short(label.anchor),
                 "off": _short(label.clearance * skeleton.steady.unit),
                 "ink": label.colour,
-                "by": _by(carrier),
+                "carrier": _carrier(carrier),
             }
             for label, carrier in skeleton.names
         ],
     }
 
 
-def _by(carrier: Carrier) -> list[Any]:
-    return [carrier.kind, *([end.body, end.x, end.y] for end in carrier.ends)]
+def _carrier(carrier: Carrier) -> dict[str, Any]:
+    return {"kind": carrier.kind, "ends": [asdict(end) for end in carrier.ends]}
 
 
 def _short(values: Any, figures: int = FIGURES) -> Any:

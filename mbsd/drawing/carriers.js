@@ -7,7 +7,7 @@
  * @param {import("../data/motion.js").Motion} motion
  * @param {import("../data/motion.js").Motion} first the same at its start
  * @param {Float64Array} times of the shapes
- * @returns {Float32Array | Float64Array} at the moment
+ * @returns {ArrayLike<number>} at the moment
  */
 export function moved(points, { carrier, shapes }, motion, first, times) {
   switch (carrier.kind) {

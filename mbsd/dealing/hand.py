@@ -61,7 +61,7 @@ class Hand:
         return able and len(self.groups) < ahead * self.threads
 
     def size(self, fair: int) -> int:
-        """Orders of its next group, ``fair`` at most."""
+        """Return the number of orders of its next group, ``fair`` at most."""
         if not math.isfinite(self.each):
             return 1
         return max(1, min(fair, self.manner.largest, int(self.manner.target / max(self.each, 1e-6))))
@@ -73,14 +73,14 @@ class Hand:
         self.groups.append(group)
 
     def drop(self, group: Group) -> None:
-        """It is through with a group, so it lives."""
+        """Drop a group that it has finished, so it lives."""
         self.stalled = False
         if group in self.groups:
             self.groups.remove(group)
             self.began = time.monotonic()
 
     def count(self, done: int, seconds: float) -> None:
-        """It did so many orders in so many seconds."""
+        """Count orders that it did in so many seconds."""
         if done:
             pace = seconds / done
             # The first order loads and builds, which says too much of the others.
@@ -90,11 +90,11 @@ class Hand:
             self.failures = 0
 
     def leave_out(self, reason: str) -> None:
-        """It gets nothing more."""
+        """Give it nothing more."""
         self.fit, self.aside = False, reason
 
     def fail(self, reason: str) -> bool:
-        """It failed; True where it is left out from now on."""
+        """Count a failure; return True if it is left out from now on."""
         self.failures += 1
         self.resting = time.monotonic() + REST * 2 ** (self.failures - 1)
         if self.failures >= self.manner.failures:
@@ -111,7 +111,7 @@ class Hand:
         return silent > max(manner.times * self.each * len(self.groups[0].keys), manner.patience)
 
     def remaining(self) -> dict[Key, float]:
-        """Seconds until each of its orders should be done, the last one last; infinite where its pace is unknown."""
+        """Return seconds until each of its orders should be done, last one last; infinite if its pace is unknown."""
         passed = time.monotonic() - self.began
         keys = [key for group in self.groups for key in group.keys]
         if not math.isfinite(self.each) or self.stalled:
@@ -136,7 +136,7 @@ def unclaimed(
     failed_on: Mapping[Key, Collection[str]],
     suspects: Mapping[Key, int],
 ) -> list[Key]:
-    """Orders taken from ``pending``, those that failed on this worker only if there is no other that answers.
+    """Return orders taken from ``pending``; those that failed on this worker only if no other answers.
 
     ``suspects`` have ended workers: they go to workers that have answered before, in groups of this size at most.
     """
@@ -163,7 +163,7 @@ def unclaimed(
 
 
 def stolen(hand: Hand, hands: Collection[Hand], left: Collection[Key]) -> list[Key]:
-    """The last orders of the worker that will be the last to end, if this one would do them sooner.
+    """Return the last orders of the worker that will be the last to end, if this one would do them sooner.
 
     For a worker that has answered before, copies with those that never have do not count: these may never answer.
     """

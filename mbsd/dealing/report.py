@@ -38,7 +38,7 @@ class Report:
 
 
 def encoded(report: Report) -> bytes:
-    """The report as bytes."""
+    """Return the report as bytes."""
     contents = [content for _, content in report.done]
     header = {
         "lacking": report.lacking,
@@ -52,7 +52,7 @@ def encoded(report: Report) -> bytes:
 
 
 def read_report(answer: Any, keys: Sequence[Key], needed: Collection[str], most: int) -> Report:
-    """The report on the orders ``keys``, none of whose results has more than ``most`` bytes.
+    """Return the report on the orders ``keys``, none of whose results has more than ``most`` bytes.
 
     ``needed`` are the contents that may be asked for. Raises WrongAnswer for one that is malformed or too large, speaks
     of other orders or contents, or leaves an order out without a reason.
@@ -79,7 +79,7 @@ def read_report(answer: Any, keys: Sequence[Key], needed: Collection[str], most:
 
 
 def read_identity(answer: Any) -> dict[str, str]:
-    """Versions and sources of a worker by name, from JSON. Raises WrongAnswer if it is anything else."""
+    """Return versions and sources of a worker by name, from JSON. Raises WrongAnswer if it is anything else."""
     if isinstance(answer, BaseException):
         raise WrongAnswer(printable(f"{type(answer).__name__}: {answer}"))
     refuse_large(len(answer) if isinstance(answer, bytes) else 0, IDENTITY)
@@ -145,7 +145,7 @@ class WrongAnswer(Exception):
 
 
 def printable(text: str, longest: int = LONGEST) -> str:
-    """A text from another machine for a message: one line of printable characters, cut where it is too long."""
+    """Return a text from another machine for a message: one line of printable characters, cut where it is too long."""
     line = "".join(letter if letter.isprintable() else " " for letter in text[: longest + 1])
     line = " ".join(line.split())
     return line if len(text) <= longest else f"{line[:longest]}..."

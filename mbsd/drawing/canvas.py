@@ -64,7 +64,7 @@ class Canvas:
 
     @contextmanager
     def on(self, carrier: Carrier | None) -> Iterator[None]:
-        """While this lasts, what is drawn is carried so."""
+        """Let ``carrier`` carry what is drawn within this context."""
         before, self.carrier = self.carrier, None if self.anew else carrier
         try:
             yield
@@ -73,7 +73,7 @@ class Canvas:
 
     @contextmanager
     def uncarried(self, anew: bool) -> Iterator[None]:
-        """While this lasts, nothing carries what is drawn, if ``anew``: it is not there in every pose."""
+        """Let nothing carry what is drawn within this context, if ``anew``: it is not there in every pose."""
         self.anew = anew
         try:
             yield
@@ -81,15 +81,19 @@ class Canvas:
             self.anew = False
 
     def leave_out(self, name: str, anchor: Point, driver: bool) -> None:
-        """A joint or driver that is not drawn in this pose, since an event has released it."""
+        """Leave out a joint or driver that an event has released."""
 
     def line(
-        self, points: Sequence[Point] | Point, colour: str = INK, width: float = 1.4, order: float = 4, **more: Any
-    ):
-        """A polyline (m); width in points."""
-        path = np.asarray(points, float)
-        self.keep(path)
-        self.ax.plot(*path.T, color=colour, linewidth=width, zorder=order, solid_capstyle="round", **more)
+        self,
+        points: Sequence[Point] | Point,
+        colour: str = INK,
+        width: float = 1.4,
+        order: float = 4,
+        alpha: float = 1.0,
+        dash: Sequence[float] = (),
+    ) -> None:
+        """Draw a polyline (m); ``width`` in points, strokes and gaps of ``dash`` in widths."""
+        self._draw(np.asarray(points, float), False, colour, None, alpha, width, order, dash)
 
     def shape(
         self,
@@ -100,16 +104,35 @@ class Canvas:
         order: float = 4,
         alpha: float = 1.0,
     ) -> None:
-        """A closed outline (m), filled; ``alpha`` is that of the filling."""
+        """Draw a closed outline (m), filled; ``alpha`` is that of the filling."""
+        self._draw(np.asarray(points, float), True, edge, fill, alpha, width, order)
+
+    def _draw(
+        self,
+        path: Point,
+        closed: bool,
+        ink: str,
+        fill: str | None,
+        alpha: float,
+        width: float,
+        order: float,
+        dash: Sequence[float] = (),
+    ) -> None:
+        """Draw a polyline, or an outline (k, 2) that may be filled."""
+        if fill is None:
+            self.keep(path)
+            more = {"linestyle": (0, tuple(dash))} if dash else {}
+            look = {"color": ink, "linewidth": width, "zorder": order, "alpha": None if alpha == 1.0 else alpha}
+            self.ax.plot(*path.T, solid_capstyle="round", **look, **more)
+            return
         from matplotlib.colors import to_rgba
 
-        self.keep(np.vstack([points, points[:1]]))
-        self.ax.fill(
-            *points.T, facecolor=to_rgba(fill, alpha), edgecolor=edge, linewidth=width, zorder=order, joinstyle="round"
-        )
+        self.keep(np.vstack([path, path[:1]]))
+        look = {"facecolor": to_rgba(fill, alpha), "edgecolor": ink, "linewidth": width, "zorder": order}
+        self.ax.fill(*path.T, joinstyle="round", **look)
 
     def circle(self, centre: Point, radius: float, **look: Any) -> None:
-        """A circle of ``radius`` units."""
+        """Draw a circle of ``radius`` units."""
         turn = np.linspace(0.0, 2 * math.pi, 49)[:-1]
         self.shape(centre + radius * self.unit * np.stack([np.cos(turn), np.sin(turn)], axis=1), **look)
 
@@ -125,14 +148,14 @@ class Canvas:
         self.ax.add_patch(PathPatch(ring, facecolor=to_rgba(colour, 0.12), edgecolor=colour, linewidth=1.3, zorder=1.7))
 
     def head(self, tip: Point, direction: Point, colour: str) -> None:
-        """The head of an arrow."""
+        """Draw the head of an arrow."""
         along = direction / np.hypot(*direction) * self.unit
         across = np.array([-along[1], along[0]])
         points = np.array([tip, tip - 0.85 * along + 0.36 * across, tip - 0.85 * along - 0.36 * across])
         self.shape(points, edge=colour, fill=colour, width=0.6, order=9.6)
 
     def hatched(self, a: Point, b: Point, side: Point, order: float = 1.5) -> None:
-        """The sign of ground: a line from a to b (m) with strokes on ``side`` (a direction)."""
+        """Draw the sign of ground: a line from a to b (m) with strokes on ``side`` (a direction)."""
         self.line([a, b], order=order)
         along = b - a
         length = float(np.hypot(*along))
@@ -197,12 +220,12 @@ def place_names(canvas: Canvas) -> None:
 
 
 def _candidates(anchor: np.ndarray, label: Label, size: np.ndarray, unit: float) -> list[np.ndarray]:
-    """Centres (pixels) of the name around its anchor, the nearest and those above first."""
+    """Return centres (pixels) of the name around its anchor, the nearest and those above first."""
     return [anchor + way for way in offsets(label.clearance * unit, size, DIRECTIONS, DISTANCES)]
 
 
 def offsets(clearance: float, size: np.ndarray, directions: int, distances: Sequence[float]) -> list[np.ndarray]:
-    """From an anchor to the middles of a word of ``size`` (2,) around it: ``clearance`` away (pixels), and farther.
+    """Return the ways from an anchor to middles of a word of ``size`` (2,), ``clearance`` away (pixels) and farther.
 
     ``directions`` are counted round the anchor, ``distances`` are beyond the clearance, in heights of the word.
     """

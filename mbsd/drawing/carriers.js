@@ -1,12 +1,15 @@
-/** Where strokes and names are at a moment: what carries them is told in mbsd/drawing/moving_skeleton.py. */
+/** Where strokes and names are at a moment; carriers.py says what the kinds of carriers mean. Both players use this file:
+ * player.js of mbsd, and the page of render, which bundles it. */
 
 /**
- * @typedef {{kind: "ground" | "body" | "place" | "line" | "shapes", ends: import("../data/motion.js").End[]}} Carrier
- * @param {Float32Array} points x and y in turn (m), at the start
- * @param {{carrier: Carrier, shapes?: Float32Array | null}} carried
- * @param {import("../data/motion.js").Motion} motion
- * @param {import("../data/motion.js").Motion} first the same at its start
- * @param {Float64Array} times of the shapes
+ * @typedef {{body: string, x: number, y: number}} End
+ * @typedef {{kind: "ground" | "body" | "place" | "line" | "shapes", ends: End[]}} Carrier
+ * @typedef {{t: number, body: (name: string) => {x: number, y: number, theta: number}, place: (end: End) => number[]}} Motion
+ * @param {ArrayLike<number>} points x and y in turn (m), at the start
+ * @param {{carrier: Carrier, shapes?: ArrayLike<number> | null}} carried
+ * @param {Motion} motion
+ * @param {Motion} first the same at its start
+ * @param {ArrayLike<number>} times of the shapes
  * @returns {ArrayLike<number>} at the moment
  */
 export function moved(points, { carrier, shapes }, motion, first, times) {

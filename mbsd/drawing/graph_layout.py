@@ -22,7 +22,7 @@ UNEVEN = 0.02
 
 
 def layout(edges: list[tuple[int, int]], sizes: np.ndarray, length: float) -> np.ndarray:
-    """(n, 2) centres of n boxes of ``sizes`` (n, 2): connected ones about ``length`` apart. Node 0 is lower left."""
+    """Return (n, 2) centres of boxes of ``sizes`` (n, 2), connected ones about ``length`` apart, node 0 lower left."""
     count = len(sizes)
     if count == 1:
         return np.zeros((1, 2))
@@ -40,7 +40,7 @@ def _stress(places: np.ndarray, distance: np.ndarray) -> float:
 
 
 def _crossings(places: np.ndarray, edges: list[tuple[int, int]], sizes: np.ndarray) -> int:
-    """Pairs of edges that cross, and boxes that an edge of others runs through."""
+    """Count pairs of edges that cross, and boxes that an edge of others runs through."""
     count = 0
     ends = np.array(edges, int).reshape(-1, 2)
     a, b = places[ends[:, 0]], places[ends[:, 1]]
@@ -57,35 +57,23 @@ def _crossings(places: np.ndarray, edges: list[tuple[int, int]], sizes: np.ndarr
 
 
 def _side(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> np.ndarray:
-    """The sign says on which side of the line from a to b the point p lies."""
+    """Return the sign says on which side of the line from a to b the point p lies."""
     return (b[..., 0] - a[..., 0]) * (p[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (p[..., 0] - a[..., 0])
 
 
 def _distances(edges: list[tuple[int, int]], count: int) -> np.ndarray:
-    """(n, n) edges between nodes by the shortest way; parts that are not connected are two edges farther than any."""
-    beside: list[list[int]] = [[] for _ in range(count)]
-    for a, b in edges:
-        beside[a].append(b)
-        beside[b].append(a)
-    out = np.full((count, count), np.inf)
-    for source in range(count):
-        out[source, source] = 0
-        wave = [source]
-        while wave:
-            next_wave = []
-            for node in wave:
-                for other in beside[node]:
-                    if out[source, other] == np.inf:
-                        out[source, other] = out[source, node] + 1
-                        next_wave.append(other)
-            wave = next_wave
-    known = out[np.isfinite(out)]
-    out[~np.isfinite(out)] = known.max() + 2
-    return out
+    """Return (n, n) edges on the shortest path between nodes; between parts not connected two more than any other."""
+    from scipy.sparse.csgraph import shortest_path
+
+    near = np.zeros((count, count))
+    near[tuple(np.array(edges, int).reshape(-1, 2).T)] = 1
+    out = shortest_path(near, directed=False, unweighted=True)
+    known = np.isfinite(out)
+    return np.where(known, out, out[known].max() + 2)
 
 
 def _scaled(distance: np.ndarray) -> np.ndarray:
-    """Classical scaling: the two largest eigenvectors of the doubly centred squares.
+    """Return places by classical scaling: the two largest eigenvectors of the doubly centred squares.
 
     Eigenvalues of a symmetric graph may be equal, and rounding would choose among their vectors: distances are uneven.
     """
@@ -113,14 +101,14 @@ def _majorised(places: np.ndarray, distance: np.ndarray) -> np.ndarray:
 
 
 def _turned(places: np.ndarray) -> np.ndarray:
-    """Longest direction level, node 0 to the left and low (y up)."""
+    """Return the places turned: longest direction level, node 0 to the left and low (y up)."""
     _, vectors = np.linalg.eigh(places.T @ places)
     turned = places @ vectors[:, ::-1]
     return turned * np.where(turned[0] > 1e-9 * np.abs(turned).max(), -1.0, 1.0)
 
 
 def _apart(places: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    """Boxes that overlap move apart along the shorter way out, half each; in large graphs all at once."""
+    """Move boxes that overlap apart along the shorter way out, half each; in large graphs all at once."""
     if len(places) > SMALL:
         return _apart_at_once(places, sizes)
     places = places.copy()
@@ -143,7 +131,7 @@ def _apart(places: np.ndarray, sizes: np.ndarray) -> np.ndarray:
 
 
 def _apart_at_once(places: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    """Where very many overlap the whole grows, then all that do are pushed in each round; what circles grows again."""
+    """Enlarge the whole while very many boxes overlap, then push all that do in each round."""
     places, need = places.copy(), (sizes[:, None] + sizes[None]) / 2
     need[np.arange(len(places)), np.arange(len(places))] = -1.0
     for turn in range(PUSHES):

@@ -31,7 +31,7 @@ PALETTE = ("#0b62a8", "#00805e", "#a83a82", "#8a6d00", "#5a4fcf", "#3b7d8c", "#8
 
 
 def colour(index: int) -> str:
-    """The colour of the body with this number, ground not counted."""
+    """Return the colour of the body with this number, ground not counted."""
     return PALETTE[index % len(PALETTE)]
 
 
@@ -73,7 +73,7 @@ _TO_LAB = np.array([
 
 
 def colours_by_role(m: Model) -> dict[str, str]:
-    """The word of the colour of each moving body, in the model's order."""
+    """Return the word of the colour of each moving body, in the model's order."""
     held = {name for joint in m.joints.values() for name in joint.bodies}
     driven = {name for driver in m.drivers.values() for name in driver.bodies} - {"ground"}
     grounded = {name for joint in m.joints.values() if "ground" in joint.bodies for name in joint.bodies} - {"ground"}
@@ -92,18 +92,18 @@ def colours_by_role(m: Model) -> dict[str, str]:
 
 
 def body_inks(m: Model) -> dict[str, str]:
-    """The ink of each moving body of a model by its role, ``#rrggbb`` on light paper."""
+    """Return the ink of each moving body of a model by its role, ``#rrggbb`` on light paper."""
     return apart({name: INKS[word] for name, word in colours_by_role(m).items()})
 
 
 def neutral_inks(names: Iterable[str]) -> dict[str, str]:
-    """Quiet greys for bodies beside arrows, no two the same."""
+    """Return quiet greys for bodies beside arrows, no two the same."""
     names = [name for name in names if name != "ground"]
     return {name: f"#{int(SLATE[k % len(SLATE)][1:], 16) + k // len(SLATE):06x}" for k, name in enumerate(names)}
 
 
 def apart(inks: Mapping[str, str]) -> dict[str, str]:
-    """The same inks, those that several bodies have in shades that differ; no two are the same."""
+    """Return the same inks, those that several bodies have in shades that differ; no two are the same."""
     out: dict[str, str] = {}
     times: dict[str, int] = {}
     for name, ink in inks.items():
@@ -116,7 +116,7 @@ def apart(inks: Mapping[str, str]) -> dict[str, str]:
 
 
 def on_dark(ink: str) -> str:
-    """The same colour on dark paper: as far from it as the ink is from white, its hue kept."""
+    """Return the same colour on dark paper: as far from it as the ink is from white, its hue kept."""
     light, chroma, hue = lch_of(ink)
     return hex_of(1.16 - 0.8 * light, 0.9 * chroma, hue)
 
@@ -131,7 +131,7 @@ def _shade(ink: str, k: int) -> str:
 
 
 def lch_of(ink: str) -> tuple[float, float, float]:
-    """Lightness, chroma and hue (degrees) of ``#rrggbb`` in OKLab."""
+    """Return lightness, chroma and hue (degrees) of ``#rrggbb`` in OKLab."""
     rgb = np.array([int(ink[k : k + 2], 16) for k in (1, 3, 5)]) / 255
     linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
     light, a, b = _TO_LAB @ np.cbrt(_TO_LMS @ linear)
@@ -139,7 +139,7 @@ def lch_of(ink: str) -> tuple[float, float, float]:
 
 
 def hex_of(light: float, chroma: float, hue: float) -> str:
-    """``#rrggbb``, with less chroma where the screen has no such colour."""
+    """Return ``#rrggbb``, with less chroma where the screen has no such colour."""
     turn = np.radians(hue)
     for part in np.linspace(1.0, 0.0, 21):
         lab = np.array([light, part * chroma * np.cos(turn), part * chroma * np.sin(turn)])
@@ -155,7 +155,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def literal(draw: F) -> F:
-    """``draw``, whose texts are no formulas; without matplotlib it says itself what is missing."""
+    """Return ``draw`` with names shown as written: matplotlib takes text between dollar signs for a formula."""
 
     @functools.wraps(draw)
     def inner(*given: Any, **named: Any) -> Any:

@@ -49,7 +49,7 @@ class Moving:
 
 
 def moving(solution: Solution) -> Moving:
-    """The skeleton of a solution."""
+    """Return the skeleton of a solution."""
     m, tracks = solution.mechanism, tracks_of(solution)
     steps = _steps(solution.t, SHAPES)
     places = np.unique(np.linspace(0, len(steps) - 1, LOOKED_AT).round().astype(int))
@@ -67,7 +67,7 @@ def moving(solution: Solution) -> Moving:
 
 
 def drawn_at(m: Model, tracks: Tracks, steady: Steady, step: int) -> Recorder:
-    """The skeleton at one output."""
+    """Return the skeleton at one output."""
     canvas = Recorder(None, steady.unit)
     steady.ready(canvas, {name: float(view.theta[step] - view.theta[0]) for name, view in tracks.views.items()})
     draw_on(canvas, m, tracks.pose(step), _colours(m), False, steady.sides)
@@ -75,8 +75,10 @@ def drawn_at(m: Model, tracks: Tracks, steady: Steady, step: int) -> Recorder:
 
 
 def names_over(first: Recorder, tracks: Tracks, steps: np.ndarray) -> list[tuple[Label, Carrier]]:
-    """Names with what carries them from where they are at the first of ``steps``; those that share a place at all of
-    these are one."""
+    """Return names with their carriers, from where they are at the first of ``steps``.
+
+    Names that share a place at all of these steps are one.
+    """
     frames = [Frames(tracks, int(step)) for step in steps]
     out: list[tuple[Label, Carrier, np.ndarray]] = []
     for label in first.names:
@@ -99,13 +101,13 @@ def _colours(m: Model) -> dict[str, str]:
 
 
 def _steps(t: np.ndarray, count: int) -> np.ndarray:
-    """Outputs nearest to equal times, the first and the last with them."""
+    """Return the outputs nearest to equal times, the first and the last with them."""
     times = np.linspace(t[0], t[-1], count + 1)
     return np.unique(np.abs(t[:, None] - times).argmin(axis=0))
 
 
 def _shapes(m: Model, tracks: Tracks, steady: Steady, steps: np.ndarray, free: list[Stroke]) -> list[list[np.ndarray]]:
-    """Points of strokes that nothing carries, at all steps."""
+    """Return points of strokes that nothing carries, at all steps."""
     shapes: list[list[np.ndarray]] = [[] for _ in free]
     for step in steps if free else ():
         here = [stroke for stroke in drawn_at(m, tracks, steady, int(step)).strokes if stroke.carrier is None]
@@ -115,7 +117,7 @@ def _shapes(m: Model, tracks: Tracks, steady: Steady, steps: np.ndarray, free: l
 
 
 def _aligned(first: Sequence[Stroke], other: Sequence[Stroke]) -> list[np.ndarray | None]:
-    """The points of each stroke of ``first`` in another pose; None where it is not drawn there."""
+    """Return the points of each stroke of ``first`` in another pose; None where it is not drawn there."""
     if len(first) == len(other):
         return [stroke.points for stroke in other]
     a, b = ([(s.closed, s.ink, s.fill, s.width, s.order) for s in strokes] for strokes in (first, other))
@@ -127,7 +129,7 @@ def _aligned(first: Sequence[Stroke], other: Sequence[Stroke]) -> list[np.ndarra
 
 
 def resampled(shapes: Sequence[np.ndarray], closed: bool) -> list[np.ndarray]:
-    """Polylines (k, 2) with one number of corners; as they are where they have that already.
+    """Return polylines (k, 2) with one number of corners, unchanged if they have that already.
 
     What is not drawn, (0, 2), becomes the one place where it was before, or will be.
     """
@@ -144,7 +146,7 @@ def resampled(shapes: Sequence[np.ndarray], closed: bool) -> list[np.ndarray]:
 
 
 def _sampled(shape: np.ndarray, count: int, closed: bool) -> np.ndarray:
-    """``count`` places evenly along a polyline; an outline begins at its rightmost corner."""
+    """Return ``count`` places evenly along a polyline; an outline begins at its rightmost corner."""
     if closed:
         first = int(shape[:, 0].argmax())
         shape = np.vstack([shape[first:], shape[: first + 1]])
@@ -154,7 +156,7 @@ def _sampled(shape: np.ndarray, count: int, closed: bool) -> np.ndarray:
 
 
 def redrawn(solution: Solution, before: Moving) -> Moving | None:
-    """The skeleton of ``solution``; ``before`` is that of the same mechanism with other numbers.
+    """Return the skeleton of ``solution``; ``before`` is that of the same mechanism with other numbers.
 
     None where it must be made anew: what is drawn has changed, or something is carried by nothing.
     """

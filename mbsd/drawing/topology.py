@@ -94,7 +94,7 @@ def _joint(joint: Joint | Force, redundant: bool) -> Node:
 
 
 def _width(text: str, size: float) -> float:
-    """About what a text takes in a wide sans serif (px)."""
+    """Return about the width of a text in a wide sans serif (px)."""
     return 0.62 * size * len(text)
 
 
@@ -126,7 +126,7 @@ def _svg(
 
 
 def _middle(node: Node, place: np.ndarray) -> np.ndarray:
-    """Middle of a joint's symbol; its words are below."""
+    """Return the middle of a joint's symbol; its words are below."""
     return place - np.array([0.0, node.size[1] / 2 - JOINT - 2])
 
 
@@ -184,12 +184,12 @@ def _value(value: str | float) -> str:
 
 
 def icon(sign: str, x: float, y: float, radius: float, colour: str) -> list[str]:
-    """The sign of a kind within ``radius`` (px) of (x, y); see :func:`sign_of`."""
+    """Return the sign of a kind within ``radius`` (px) of (x, y); see :func:`sign_of`."""
     return [_disc(x, y, radius - 1, colour), *ICONS.get(sign, _diamond)(x, y, radius, colour)]
 
 
 def sign_of(connection: Joint | Force) -> str:
-    """The sign of a joint, driver or force in ICONS."""
+    """Return the sign of a joint, driver or force in ICONS."""
     if isinstance(connection.kind, ForceKind):
         return "force"
     if connection.kind.driven:
@@ -229,7 +229,7 @@ def _force(x: float, y: float, r: float, colour: str) -> list[str]:
 
 
 def _diamond(x: float, y: float, r: float, colour: str) -> list[str]:
-    """Icon of a kind without a sign."""
+    """Return the icon of a kind without a sign."""
     half = 0.5 * r
     return [_stroke(d("M", x - half, y, "l", half, -half, "l", half, half, "l", -half, half, "z"), colour)]
 
@@ -240,7 +240,7 @@ def _zigzag(r: float) -> list[str | float]:
 
 
 def _turning(x: float, y: float, r: float, colour: str) -> list[str]:
-    """Three quarters of a turn, counter-clockwise, with its head."""
+    """Return three quarters of a turn, counter-clockwise, with its head."""
     q = 0.5 * r
     arc = d("M", x, y + q, "A", q, q, "0 1 0", x - q, y)
     head = d("M", x - q, y + 0.3 * r, "l", -0.26 * r, -0.4 * r, "h", 0.52 * r, "z")
@@ -248,7 +248,7 @@ def _turning(x: float, y: float, r: float, colour: str) -> list[str]:
 
 
 def _pushing(x: float, y: float, r: float, colour: str) -> list[str]:
-    """A straight arrow."""
+    """Return a straight arrow."""
     head = d("M", x + 0.64 * r, y, "l", -0.46 * r, -0.3 * r, "v", 0.6 * r, "z")
     return [_stroke(d("M", x - 0.6 * r, y, "h", 0.8 * r), colour), _filled(head, colour)]
 

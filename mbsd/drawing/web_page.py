@@ -123,7 +123,7 @@ def _carrier(carrier: Carrier) -> dict[str, Any]:
 
 
 def _short(values: Any, figures: int = FIGURES) -> Any:
-    """Numbers with so many figures."""
+    """Return numbers with so many figures."""
     if np.ndim(values) == 0:
         return float(f"{float(values):.{figures}g}")
     return [float(f"{value:.{figures}g}") for value in np.asarray(values, float).tolist()]

@@ -74,7 +74,7 @@ class Content:
         self._alive: list[object] = []  # so that no number in _known is used for another object
 
     def hexdigest(self) -> str:
-        """The hash of all that was added."""
+        """Return the hash of all that was added."""
         return self._digest.hexdigest()
 
     def add(self, value: Any) -> Content:
@@ -155,7 +155,7 @@ class Content:
         return _joined(kind, "", *map(self._content, parts))
 
     def _mapping(self, mapping: Mapping[Any, Any]) -> bytes:
-        """The order of names does not count."""
+        """Return the order of names does not count."""
         return _joined("dict", "", *sorted(self._content(key) + self._content(value) for key, value in mapping.items()))
 
     def _built_in(self, function: Any) -> bytes:
@@ -202,7 +202,7 @@ class Content:
                 yield _joined("global", name, self._content(value))
 
     def _leniently(self, value: Any) -> bytes:
-        """The same for what may not matter: of what has no content of its own the kind counts."""
+        """Return the same for what may not matter: of what has no content of its own the kind counts."""
         strict, self.strict = self.strict, False
         try:
             return self._content(value)
@@ -210,7 +210,7 @@ class Content:
             self.strict = strict
 
     def _imports(self, function: FunctionType, module: ModuleType | None) -> Iterable[bytes]:
-        """Modules that are imported when the function runs, or that it can find; they count as a whole."""
+        """Yield contents of imports when the function runs; modules that it can find count as a whole."""
         named = references(function.__code__)
         package = str(function.__globals__.get("__package__") or "")
         for name, level, taken in sorted(named.imports):
@@ -259,7 +259,7 @@ class Content:
             return _joined("descriptor", f"{type(value).__module__}.{type(value).__qualname__}")
 
     def _module(self, module: ModuleType, attributes: Iterable[str]) -> bytes:
-        """A module, and what code with these names reaches in it and in the modules below."""
+        """Return a module, and what code with these names reaches in it and in the modules below."""
         name = module.__name__
         if self._is_installed(module):
             return _joined("module", name)
@@ -276,7 +276,7 @@ class Content:
         return _joined("module", name, *parts)
 
     def _object(self, value: Any) -> bytes:
-        """By what pickle would keep of it, functions and classes included."""
+        """Return the content of what pickle would keep of an object, functions and classes included."""
         kind = type(value)
         if kind.__module__.partition(".")[0] == "numba" and isinstance(getattr(value, "py_func", None), FunctionType):
             return self._all("compiled", [value.py_func, getattr(value, "targetoptions", None)])
@@ -344,7 +344,7 @@ def _text(annotation: Any) -> str:
 
 @functools.cache
 def own_sources() -> str:
-    """SHA-256 over the sources of this package, by name and content."""
+    """Return the SHA-256 over the sources of this package, by name and content."""
     digest = hashlib.sha256(mbsd.__version__.encode())
     for file in sorted(PACKAGE.rglob("*.py")):
         digest.update(file.relative_to(PACKAGE).as_posix().encode() + b"\0" + file.read_bytes() + b"\0")
@@ -403,7 +403,7 @@ def references(code: CodeType) -> References:
 
 
 def instructions(code: CodeType) -> Iterator[tuple[str, object, bool]]:
-    """The steps of code: name, argument, whether that is a constant.
+    """Return the steps of code: name, argument, whether that is a constant.
 
     Left out are the line and the docstring of a class, which its body stores, and how constants are numbered, as a
     docstring is one.

@@ -46,12 +46,12 @@ def is_of_mbsd(file: str) -> bool:
 
 
 def working_folder(places: Places) -> str:
-    """The working folder as seen from the root."""
+    """Return the working folder as seen from the root."""
     return os.path.relpath(os.getcwd(), places.root)
 
 
 def root_of(function: Callable[..., Any]) -> Path:
-    """The folder of the user's file that defines a function; the working folder where it has none."""
+    """Return the folder of the user's file that defines a function; the working folder where it has none."""
     while isinstance(function, functools.partial):
         function = function.func
     function = inspect.unwrap(getattr(function, "__func__", function))
@@ -63,7 +63,7 @@ def root_of(function: Callable[..., Any]) -> Path:
 
 
 def loaded_inputs(content: Content, places: Places) -> Inputs:
-    """Modules of the user that count as a whole, with what they import, and packages that build and measure reach.
+    """Return user modules that count as a whole, with their imports, and packages that build and measure reach.
 
     A module whose file was written after this process began may be loaded as it was before: it counts as changed.
     """
@@ -82,7 +82,7 @@ def loaded_inputs(content: Content, places: Places) -> Inputs:
 
 @functools.cache
 def _begun() -> float:
-    """When this process began (s since the epoch); where the system does not tell, when it was first asked."""
+    """Return when this process began (s since the epoch); if the system does not tell, when this was loaded."""
     try:
         ticks = float(Path("/proc/self/stat").read_text().rpartition(")")[2].split()[19])
         up = float(Path("/proc/uptime").read_text().split()[0])

@@ -53,12 +53,12 @@ def identity() -> dict[str, str]:
 
 
 def manner_of(measure: object) -> Manner:
-    """How points are handed to this machine."""
+    """Return how points are handed to this machine."""
     return TOGETHER if isinstance(measure, Simulated) else LOCAL
 
 
 def by_here(build: Callable[..., Any], measure: Callable[[Any], Any], recorder: Recorder | None) -> Deals:
-    """Points for this process, one after the other."""
+    """Return points for this process, one after the other."""
 
     def computed(points: Numbered, _: Mapping[str, bytes]) -> bytes:
         return answered(partial(work.chunk_of, build, measure, recorder), points)
@@ -67,7 +67,7 @@ def by_here(build: Callable[..., Any], measure: Callable[[Any], Any], recorder: 
 
 
 def by_processes(order: Order, count: int, manner: Manner) -> Deals:
-    """Points for processes of this machine. Raises ModelError if the extra that brings them is missing."""
+    """Return points for processes of this machine. Raises ModelError if the extra that brings them is missing."""
     try:
         pool = Processes(count, work.begin, order)
     except ImportError as error:
@@ -76,7 +76,7 @@ def by_processes(order: Order, count: int, manner: Manner) -> Deals:
 
 
 def by_cluster(order: Order, client: Any, points: Sequence[Point]) -> Deals:
-    """Points for the workers of a cluster that are as this machine."""
+    """Return points for the workers of a cluster that are as this machine."""
     kind = Kind(answer_of, (order,), reader(points), MOST, inputs_of, _ended)
     trust = Trust(identity(), asker(__name__, "identity"))
     return partial(_dealt, Dask(client, strict=True), kind, FAR, trust)
@@ -89,7 +89,7 @@ def _ended(_: object) -> Result:
 def _dealt(
     pool: Here, kind: Kind, manner: Manner, trust: Trust | None, todo: Mapping[int, Point]
 ) -> Generator[Found, None, None]:
-    """The results of all points with their numbers as they come. Raises ModelError where no worker is left."""
+    """Return the results of all points with their numbers as they come. Raises ModelError where no worker is left."""
     with closing(pool):
         for results, inputs, _ in Deal(pool, kind, todo, VOICE, manner, trust).parts():
             yield results, inputs or Inputs()
@@ -110,7 +110,7 @@ def answer_of(order: Order, points: Numbered, sent: Mapping[str, bytes] | None =
 
 
 def answered(done_of: Callable[[list[Point]], Done], points: Numbered) -> bytes:
-    """The report on these points. ``done_of`` computes them."""
+    """Return the report on these points. ``done_of`` computes them."""
     try:
         done = done_of([point for _, point in points])
     except Exception as error:
@@ -122,7 +122,7 @@ def answered(done_of: Callable[[list[Point]], Done], points: Numbered) -> bytes:
 
 
 def reader(points: Sequence[Point]) -> Callable[[int, bytes], Result]:
-    """Reads the result of a point: names that are free, with numbers, or a reason. Raises WrongAnswer for others."""
+    """Return a reader of results: numbers under free names, or a reason. It raises WrongAnswer for others."""
 
     def read(number: int, content: bytes) -> Result:
         result = own_result(number, content)
@@ -135,7 +135,7 @@ def reader(points: Sequence[Point]) -> Callable[[int, bytes], Result]:
 
 
 def own_result(_: int, content: bytes) -> Result:
-    """The result of a point. Raises WrongAnswer for anything else than numbers by name, or a reason."""
+    """Return the result of a point. Raises WrongAnswer for anything else than numbers by name, or a reason."""
     match _read(content):
         case [None, str() as reason, bool() as passing]:
             return Result(None, reason, passing)

@@ -86,7 +86,7 @@ class _Lines:
 
 
 def duration(seconds: float) -> str:
-    """A time for people: ``12 s``, ``3 min 20 s``, ``2 h 05 min``."""
+    """Return a time for people: ``12 s``, ``3 min 20 s``, ``2 h 05 min``."""
     whole = round(seconds)
     if whole < 60:
         return f"{whole} s"

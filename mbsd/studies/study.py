@@ -144,7 +144,7 @@ def _refuse_measure(build: Callable[..., Mechanism], measure: Simulated, points:
 
 
 def _way(build: Callable[..., Mechanism], measure: Simulated, points: Sequence[Point]) -> str:
-    """How points like some of these are simulated."""
+    """Return how points like some of these are simulated, in words."""
     if not points:
         return "there are no points"
     some = []
@@ -157,12 +157,12 @@ def _way(build: Callable[..., Mechanism], measure: Simulated, points: Sequence[P
 
 
 def _index_of(grid: Any) -> Any:
-    """The rows of a DataFrame keep their names."""
+    """Return the rows of a DataFrame keep their names."""
     return grid.index if hasattr(grid, "to_dict") and hasattr(grid, "columns") else None
 
 
 def _key_of(point: Point) -> str:
-    """Names in any order are one point."""
+    """Return names in any order are one point."""
     return Content().add(dict(sorted(point.items()))).hexdigest()[:32]
 
 
@@ -173,7 +173,7 @@ def _store(folder: str | os.PathLike[str], content: Content, places: StudyPlaces
 
 
 def _client(client: Any) -> Any:
-    """A connection of our own is closed at the end, the user's stays."""
+    """Return a connection of our own is closed at the end, the user's stays."""
     if client is None or hasattr(client, "scheduler_info"):
         return nullcontext(client)
     if not isinstance(client, str):
@@ -191,7 +191,7 @@ def _deals(
     points: Sequence[Point],
     todo: int,
 ) -> Deals:
-    """Who computes ``todo`` of the points; ``places`` name what build and measure read, if that is recorded."""
+    """Return who computes ``todo`` of the points; ``places`` name inputs of build and measure, if recorded."""
     count = cores() if processes is None else processes
     if client is None and count < 1:
         raise ModelError(f"study: processes is {count}; it must be 1 at least")

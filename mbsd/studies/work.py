@@ -61,7 +61,7 @@ class Order(NamedTuple):
     """Another text for each call of ``study``, between which modules of the user may have changed."""
 
     def recorder(self) -> Recorder | None:
-        """Record of what build and measure read, if that matters."""
+        """Return a record of what build and measure read; None if nothing is kept."""
         return None if self.root is None else Recorder(StudyPlaces(Path(self.root)))
 
 
@@ -103,7 +103,7 @@ def loaded(order: Order) -> Work:
 
 
 def _forget_modules() -> None:
-    """Modules of the user that an earlier study has loaded are loaded anew: their files may have changed."""
+    """Forget modules of the user that an earlier study loaded: their files may have changed."""
     if not _before:
         _before.update(sys.modules)
     importlib.invalidate_caches()
@@ -149,7 +149,7 @@ def _together(build: Callable[..., Any], measure: Simulated, points: Sequence[Po
 
 
 def result_of(build: Callable[..., Any], measure: Callable[[Any], Any], point: Point) -> Result:
-    """One point; whatever build or measure raise is its reason."""
+    """Return the result of one point; whatever build or measure raise is its reason."""
     try:
         return Result(_numbers(measure(build(**point))))
     except Exception as error:

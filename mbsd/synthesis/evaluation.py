@@ -5,7 +5,6 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -22,7 +21,7 @@ from mbsd.kinematics.sweep import sweep, sweep_times
 from mbsd.model.mechanism import Model
 from mbsd.numbers.names import Number, number_named, twin_of, with_values
 from mbsd.results.solution import Solution
-from mbsd.synthesis.variables import built, refuse_build
+from mbsd.synthesis.variables import built, numbers_of_build, refuse_build
 
 Span = tuple[float | None, int, Any]
 """Duration (s), steps, times."""
@@ -100,7 +99,7 @@ class Moves:
         return Tried(value, slope, [v for v, _ in rest], [s for _, s in rest], tangents.solve, model)
 
     def model(self, x: np.ndarray) -> Any:
-        """The mechanism with numbers x. Raises what the author's function raises."""
+        """Return the mechanism with numbers x. Raises what the author's function raises."""
         if self.build is None:
             return with_values(self.m, self.numbers, list(x))
         values = dict(zip(self.bounds.names, map(float, x), strict=True))
@@ -114,20 +113,10 @@ class Moves:
     def _numbers(self, model: Model, x: np.ndarray) -> list[Number]:
         if self.build is None:
             return [number_named(model, name) for name in self.bounds.names]
-
-        def beside(k: int, value: float) -> Model:
-            return self.model(np.where(np.arange(len(x)) == k, value, x))
-
-        def put(m: Model, value: float) -> None:
-            raise AssertionError("it is built")
-
-        return [
-            Number(name, float(x[k]), put, partial(beside, k), reach=float(self.bounds.size[k]))
-            for k, name in enumerate(self.bounds.names)
-        ]
+        return numbers_of_build(self.bounds.names, x, self.bounds.size, self.model)
 
     def _defaults(self, build: Callable[..., Any]) -> np.ndarray:
-        """(k,) defaults of the author's function, the middle of the bounds where it has none. Raises ModelError."""
+        """Return (k,) defaults of the author's function, the middle of the bounds where it has none."""
         refuse_build(f"{self.m.name}: optimise", build, self.bounds.names)
         try:
             known = inspect.signature(build).parameters
@@ -278,7 +267,7 @@ def _name(condition: Any, k: int) -> str:
 
 
 def function_of_values(names: Sequence[str], what: Any) -> Callable[[np.ndarray], tuple[float, np.ndarray]] | None:
-    """Value and gradient by the numbers x of what is one of them by name; None of all else."""
+    """Return a function for value and gradient of what is one of the numbers by name; None for all else."""
     if not isinstance(what, str) or what not in names:
         return None
     k = names.index(what)

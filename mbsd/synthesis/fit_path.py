@@ -156,7 +156,7 @@ def fit_path(
 
 
 def _result(search: Search, trace: str, x: np.ndarray, ends: list[float]) -> PathFit:
-    """The fitted mechanism, swept once more by itself: what is reported is its own motion."""
+    """Return the fitted mechanism, swept once more by itself: what is reported is its own motion."""
     designs, target = search.designs, search.target
     shift = float(x[-1]) if search.free_shift else 0.0
     own = x[: designs.varied.count]
@@ -213,7 +213,7 @@ def _times(m: Model, times: object, count: int) -> np.ndarray | None:
 
 
 def _traced(m: Model, point: str | Marker | None, build: Build | None) -> tuple[Model, str]:
-    """The mechanism, which traces the point, and the name of the trace. Raises ModelError."""
+    """Return the mechanism, which traces the point, and the name of the trace. Raises ModelError."""
     if isinstance(point, Marker):
         if build is not None:
             raise ModelError(f"{m.name}: fit_path: with build the point is a name; trace it there: m.trace(...)")

@@ -41,11 +41,11 @@ class Missed:
     along: np.ndarray
     """(n, N, 2) unit vectors along which a place moves freely; zero where it does not."""
 
-    def take(self, index: np.ndarray) -> Missed:
-        """Some of the designs."""
+    def subset(self, index: np.ndarray) -> Missed:
+        """Return some of the designs."""
         return Missed(self.rows[index], self.cost[index], self.where[index], self.along[index])
 
-    def put(self, index: np.ndarray, other: Missed) -> None:
+    def replace(self, index: np.ndarray, other: Missed) -> None:
         """Replace some of the designs."""
         self.rows[index], self.cost[index] = other.rows, other.cost
         self.where[index], self.along[index] = other.where, other.along
@@ -72,7 +72,7 @@ class Residuals:
         return np.array([step_of(STEP, size) for size in [*sizes, *self.size[len(sizes) :].tolist()]])
 
     def missed(self, u: np.ndarray, fine: bool) -> Missed:
-        """Errors of designs u (n, k), on chords of the coarse motion or exactly on the fine one."""
+        """Return the errors of designs u (n, k), on chords of the coarse motion or exactly on the fine one."""
         paths, shifts = self._paths(self.low + self.size * u, fine)
         there = np.where(paths.closes[:, None, None], paths.path, 0.0)
         where = self.target.where(there, shifts, fine)
@@ -83,11 +83,11 @@ class Residuals:
         return missed
 
     def slopes(self, u: np.ndarray, missed: Missed, fine: bool) -> np.ndarray:
-        """(n, r, k) of the designs u (n, k) that missed so."""
+        """Return (n, r, k) of the designs u (n, k) that missed so."""
         n, k = u.shape
         x, steps = self.low + self.size * u, np.where(u < 0.5, self.steps, -self.steps)
         changed = (x[:, None] + steps[:, None] * np.eye(k)).reshape(n * k, k)
-        paths, shifts = self._paths(changed, fine) if self.designs.at_once else self._beside(x, steps, fine)
+        paths, shifts = self._paths(changed, fine) if self.designs.at_once else self._neighbours(x, steps, fine)
         closes = paths.closes & np.repeat(np.isfinite(missed.cost), k)
         there = np.where(closes[:, None, None], paths.path, 0.0)
         held = np.repeat(missed.where, k, axis=0)
@@ -102,19 +102,19 @@ class Residuals:
         return slope.transpose(0, 2, 1)
 
     def _paths(self, x: np.ndarray, fine: bool) -> tuple[Paths, np.ndarray]:
-        """Paths and shifts (s) of designs x (n, k)."""
+        """Return paths and shifts (s) of designs x (n, k)."""
         count = self.designs.varied.count
         return self.designs(x[:, :count], fine), x[:, count:].sum(axis=1)
 
-    def _beside(self, x: np.ndarray, steps: np.ndarray, fine: bool) -> tuple[Paths, np.ndarray]:
-        """The same of designs x (n, k) that differ by a step (n, k) in one number each, along exact tangents."""
+    def _neighbours(self, x: np.ndarray, steps: np.ndarray, fine: bool) -> tuple[Paths, np.ndarray]:
+        """Return the same of designs x (n, k) that differ by a step (n, k) in one number each, along exact tangents."""
         count, k = self.designs.varied.count, x.shape[1]
         shifts = (x[:, None] + steps[:, :, None] * np.eye(k))[..., count:].sum(axis=2).ravel()
-        paths = self.designs.beside(x[:, :count], steps[:, :count], fine)
+        paths = self.designs.neighbours(x[:, :count], steps[:, :count], fine)
         if count == k:
             return paths, shifts
         own = np.arange(len(x))[:, None] * count + np.minimum(np.arange(k), count - 1)  # the shift leaves the path
-        still = self.designs.beside(x[:, :count], 0.0 * steps[:, :count], fine)
+        still = self.designs.neighbours(x[:, :count], 0.0 * steps[:, :count], fine)
         pick = own.ravel()
         free = np.tile(np.arange(k) >= count, len(x))
         return Paths(*(np.where(free.reshape(-1, *[1] * (a.ndim - 1)), b[pick], a[pick])
@@ -129,7 +129,7 @@ class Residuals:
         return np.column_stack([away, WEIGHT * short, WEIGHT * excess])
 
     def _along(self, there: np.ndarray, missed: Missed, fine: bool) -> np.ndarray:
-        """Directions of the paths where the points' places are free and nearest."""
+        """Return directions of the paths where the points' places are free and nearest."""
         points = len(self.target.points)
         if self.target.times is not None:
             return np.zeros((len(there), points, 2))
@@ -160,7 +160,7 @@ def descended(
     halved: tuple[int, ...] = (),
     seen: Callable[[float, np.ndarray], None] = lambda cost, u: None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Designs (n, k) in parts of the bounds, the best first, and their costs (n,), from designs u.
+    """Return designs (n, k) in parts of the bounds, the best first, and their costs (n,), from designs u.
 
     At the steps ``halved`` the better half goes on alone. A descent ends at a cost of ``enough``; the first that does
     ends them all. ``seen`` is called with the best cost and its design
@@ -187,8 +187,8 @@ def descended(
         ours = goes[better]
         if len(ours):
             u[ours] = tried[better]
-            missed.put(ours, there.take(better))
-            slopes[ours] = residuals.slopes(u[ours], missed.take(ours), fine)
+            missed.replace(ours, there.subset(better))
+            slopes[ours] = residuals.slopes(u[ours], missed.subset(ours), fine)
         best = int(missed.cost.argmin())
         seen(float(missed.cost[best]), u[best])
     order = np.argsort(missed.cost, kind="stable")
@@ -196,7 +196,7 @@ def descended(
 
 
 def _steps(u: np.ndarray, rows: np.ndarray, slopes: np.ndarray, damping: np.ndarray) -> np.ndarray:
-    """(n, k): of each design -(J^T J + damping)^-1 J^T r over the numbers that no bound holds."""
+    """Return (n, k): of each design -(J^T J + damping)^-1 J^T r over the numbers that no bound holds."""
     slope = np.einsum("nrk,nr->nk", slopes, rows)
     square = np.einsum("nrk,nrl->nkl", slopes, slopes)
     free = ~((u <= 0) & (slope > 0) | (u >= 1) & (slope < 0))

@@ -118,7 +118,7 @@ def optimise(
 
 
 def _first(m: Model, bounds: Bounds, moves: Moves, start: Mapping[str, float] | None) -> np.ndarray:
-    """(k,) where the search begins. Raises ModelError for a start that cannot be."""
+    """Return (k,) where the search begins. Raises ModelError for a start that cannot be."""
     first = np.clip(moves.given, bounds.low, bounds.high)
     if start is None:
         return first
@@ -152,7 +152,7 @@ class _Search:
         self.history: list[float] = []
 
     def at(self, u: np.ndarray) -> Tried:
-        """The motion at u; where there is none, one that is worse the farther u is from the last that there was."""
+        """Return the motion at u; if there is none, one that is worse the farther u is from the last valid one."""
         u = np.clip(u, 0.0, 1.0)
         key = u.tobytes()
         if key in self.kept:
@@ -174,7 +174,7 @@ class _Search:
         return tried
 
     def missed(self, tried: Tried) -> float:
-        """How far the worst condition is missed, in its size."""
+        """Return how far the worst condition is missed, in its size."""
         worst = 0.0
         for condition, value in zip(self.conditions, tried.conditions, strict=True):
             size = _size(condition, value)

@@ -36,7 +36,7 @@ class Target:
         return float(np.hypot(*np.ptp(self.points, axis=0)))
 
     def squares(self, paths: np.ndarray, shifts: np.ndarray) -> np.ndarray:
-        """(n,) mean squared distance (m^2) of paths (n, T, 2), times shifted by ``shifts`` (n,) (s)."""
+        """Return (n,) mean squared distance (m^2) of paths (n, T, 2), times shifted by ``shifts`` (n,) (s)."""
         if self.times is not None:
             at_times = on_chords(paths, self._samples(paths.shape[1], shifts))
             return ((at_times - self.points) ** 2).sum(-1).mean(-1)
@@ -52,7 +52,7 @@ class Target:
         return out
 
     def where(self, paths: np.ndarray, shifts: np.ndarray, fine: bool) -> np.ndarray:
-        """(n, N) sample numbers of the places of paths (n, T, 2) that stand for the points: on chords, or exactly."""
+        """Return (n, N) sample numbers of places on paths (n, T, 2) that stand for the points, on chords or exactly."""
         if self.times is not None:
             return self._samples(paths.shape[1], shifts)
         if fine:
@@ -63,7 +63,7 @@ class Target:
         return nearest_on_chords(paths, self.points)[1]
 
     def missed(self, paths: np.ndarray, where: np.ndarray, fine: bool) -> np.ndarray:
-        """(n, r, 2) differences (m) of the points from places ``where`` (n, N) of paths (n, T, 2).
+        """Return (n, r, 2) differences (m) of the points from places ``where`` (n, N) of paths (n, T, 2).
 
         Where the points are a closed curve, differences of the paths from it follow, weighed so that both count alike.
         """
@@ -81,7 +81,7 @@ class Target:
         return np.concatenate([away, weight * beside.reshape(samples.shape)], axis=1)
 
     def directions(self, paths: np.ndarray, where: np.ndarray, fine: bool) -> np.ndarray:
-        """(n, N, 2) unit vectors along paths (n, T, 2) at places ``where`` (n, N)."""
+        """Return (n, N, 2) unit vectors along paths (n, T, 2) at places ``where`` (n, N)."""
         if fine:
             h = 1e-4
             ends = [
@@ -95,7 +95,7 @@ class Target:
         return line / np.maximum(np.hypot(*np.moveaxis(line, -1, 0)), 1e-300)[..., None]
 
     def reached(self, path: np.ndarray, shift: float) -> np.ndarray:
-        """(N, 2) the places of one path (T, 2) that stand for the points (m)."""
+        """Return (N, 2) the places of one path (T, 2) that stand for the points (m)."""
         if self.times is None:
             find = feet_in_order if self.ordered else feet
             return at(path, find(path, self.points, self.returns), self.returns)
@@ -103,12 +103,12 @@ class Target:
         return at(path, where, self.returns)
 
     def _ring(self) -> np.ndarray:
-        """The points as a closed polygon of few corners, the first once more at its end."""
+        """Return the points as a closed polygon of few corners, the first once more at its end."""
         points = self.points if len(self.points) <= BACKWARDS else resampled(self.points, True, BACKWARDS)
         return np.vstack([points, points[:1]])
 
     def _samples(self, count: int, shifts: np.ndarray) -> np.ndarray:
-        """(n, N) sample numbers, not whole, of the points' times."""
+        """Return (n, N) sample numbers, not whole, of the points' times."""
         assert self.times is not None
         first, last = self.span
         part = (self.times + shifts[:, None] - first) / (last - first)
@@ -128,7 +128,7 @@ CUTS = 24
 
 
 def nearest_on_chords(paths: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Squared distances (n, N) of points (N, 2) from paths (n, T, 2) of chords, and where: (n, N) as sample numbers."""
+    """Return squared distances (n, N) of points (N, 2) from paths (n, T, 2) of chords, and sample numbers (n, N)."""
     distance, ahead = _from_chords(paths, points)
     best = distance.argmin(axis=2)
     take = best[..., None]
@@ -136,7 +136,7 @@ def nearest_on_chords(paths: np.ndarray, points: np.ndarray) -> tuple[np.ndarray
 
 
 def in_order(paths: np.ndarray, points: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarray]:
-    """(n,) least sums of squared distances of points (N, 2), reached one after the other, and the cuts (n,).
+    """Return (n,) least sums of squared distances of points (N, 2), reached one after the other, and the cuts (n,).
 
     Of paths (n, T, 2) of chords; of closed ones the first point may be anywhere, and all follow within one turn after
     the sample ``cut``. The best place of each point given those before it is found by dynamic programming:
@@ -159,7 +159,7 @@ def _in_order(distance: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarra
 
 
 def _from_chords(paths: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(n, N, T - 1) squared distances from each chord, and the part of it before the nearest place."""
+    """Return (n, N, T - 1) squared distances from each chord, and the part of it before the nearest place."""
     ends = np.diff(paths, axis=1)[:, None]  # (n, 1, T - 1, 2)
     away = points[None, :, None] - paths[:, None, :-1]  # (n, N, T - 1, 2)
     square = np.maximum((ends**2).sum(-1), 1e-300)
@@ -168,7 +168,7 @@ def _from_chords(paths: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.
 
 
 def wrapped(where: np.ndarray, samples: int) -> tuple[np.ndarray, np.ndarray]:
-    """The samples below sample numbers ``where``, and the part of a chord after them; a path goes round at its end."""
+    """Return samples below sample numbers ``where`` and the part of a chord after them; a path goes round."""
     chords = samples - 1
     turned = np.where(where > chords, where - chords, where)
     below = np.clip(np.floor(turned).astype(int), 0, chords - 1)
@@ -176,25 +176,25 @@ def wrapped(where: np.ndarray, samples: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def on_chords(paths: np.ndarray, where: np.ndarray) -> np.ndarray:
-    """(n, N, 2) places of paths (n, T, 2) of chords at sample numbers ``where`` (n, N)."""
+    """Return (n, N, 2) places of paths (n, T, 2) of chords at sample numbers ``where`` (n, N)."""
     below, ahead = wrapped(where, paths.shape[1])
     rows, part = np.arange(len(paths))[:, None], ahead[..., None]
     return (1 - part) * paths[rows, below] + part * paths[rows, below + 1]
 
 
 def at(path: np.ndarray, where: np.ndarray, closed: bool) -> np.ndarray:
-    """(N, 2) places of a path (T, 2) at sample numbers ``where`` (N,), not whole."""
+    """Return (N, 2) places of a path (T, 2) at sample numbers ``where`` (N,), not whole."""
     middle, coefficients = _pieces(path, where, closed)
     return np.einsum("np,npc->nc", (where - middle)[:, None] ** np.arange(7), coefficients)
 
 
 def feet(path: np.ndarray, points: np.ndarray, closed: bool) -> np.ndarray:
-    """(N,) sample numbers at which a path (T, 2), closed or not, is nearest to points (N, 2)."""
+    """Return (N,) sample numbers at which a path (T, 2), closed or not, is nearest to points (N, 2)."""
     return _refined(path, points, nearest_on_chords(path[None], points)[1][0], closed)
 
 
 def feet_in_order(path: np.ndarray, points: np.ndarray, closed: bool) -> np.ndarray:
-    """(N,) sample numbers, rising, at which a path (T, 2) is nearest to points (N, 2) in their order.
+    """Return (N,) sample numbers, rising, at which a path (T, 2) is nearest to points (N, 2) in their order.
 
     Those of a closed path rise from a start anywhere to less than a turn later.
     """
@@ -203,7 +203,7 @@ def feet_in_order(path: np.ndarray, points: np.ndarray, closed: bool) -> np.ndar
 
 
 def chord_feet_in_order(paths: np.ndarray, points: np.ndarray, closed: bool) -> np.ndarray:
-    """(n, N) the same of paths (n, T, 2) of chords."""
+    """Return (n, N) the same of paths (n, T, 2) of chords."""
     distance, ahead = _from_chords(paths, points)
     cut, count = _in_order(distance, closed)[1], distance.shape[2]
     turned = ((cut[:, None] + np.arange(count)) % count)[:, None]
@@ -219,7 +219,7 @@ def chord_feet_in_order(paths: np.ndarray, points: np.ndarray, closed: bool) -> 
 
 
 def _refined(path: np.ndarray, points: np.ndarray, where: np.ndarray, closed: bool) -> np.ndarray:
-    """The nearest places (N,) beside those of the chords, on the polynomials."""
+    """Return the nearest places (N,) beside those of the chords, on the polynomials."""
     middle, coefficients = _pieces(path, where, closed)
     last, powers = len(path) - 1.0, np.arange(7)
     rates = powers[1:, None] * coefficients[:, 1:]
@@ -242,7 +242,7 @@ def _refined(path: np.ndarray, points: np.ndarray, where: np.ndarray, closed: bo
 
 
 def resampled(points: np.ndarray, closed: bool, count: int) -> np.ndarray:
-    """(count, 2) points at equal distances along a polygon (N, 2)."""
+    """Return (count, 2) points at equal distances along a polygon (N, 2)."""
     ring = np.vstack([points, points[:1]]) if closed else points
     length = np.append(0.0, np.cumsum(np.hypot(*np.diff(ring, axis=0).T)))
     at_lengths = np.linspace(0.0, length[-1], count, endpoint=not closed)
@@ -250,7 +250,7 @@ def resampled(points: np.ndarray, closed: bool, count: int) -> np.ndarray:
 
 
 def _pieces(path: np.ndarray, where: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarray]:
-    """The middle sample (N,) of each polynomial, and its coefficients (N, 7, 2)."""
+    """Return the middle sample (N,) of each polynomial, and its coefficients (N, 7, 2)."""
     count = len(path) - 1
     middle = np.rint(where).astype(int)
     if closed:  # the last sample is the first again

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import no_such, shown
 from mbsd.base.users_function import described, named_parameters
 from mbsd.model.mechanism import Model
+from mbsd.numbers.names import Number
 
 Value = float | tuple[float, ...]
 FORM = 'give "name": (lowest, highest), or for a place "name": ((lowest, highest), (lowest, highest))'
@@ -35,7 +37,7 @@ class Varied:
         return len(self.low)
 
     def columns(self) -> list[tuple[str, slice, bool]]:
-        """Each name, where its numbers are, and whether it is a single number."""
+        """Return each name, the slice of its numbers, and True if it is a single number."""
         out, first = [], 0
         for name, size in self.sizes.items():
             out.append((name, slice(first, first + max(size, 1)), size == 0))
@@ -43,7 +45,7 @@ class Varied:
         return out
 
     def values(self, x: np.ndarray) -> dict[str, Value]:
-        """By name, the numbers of a vector x (k,)."""
+        """Return, by name, the numbers of a vector x (k,)."""
         return {
             name: float(x[part][0]) if single else tuple(float(v) for v in x[part])
             for name, part, single in self.columns()
@@ -114,6 +116,22 @@ def refuse_build(what: str, build: Any, names: Sequence[str]) -> None:
     for name, p in parameters.items():
         if name not in names and p.default is p.empty and p.kind is not p.VAR_POSITIONAL:
             raise ModelError(f"{what}: argument '{name}' of build neither varies nor has a default; give it one")
+
+
+def numbers_of_build(
+    names: Sequence[str], x: np.ndarray, size: np.ndarray, model: Callable[[np.ndarray], Model]
+) -> list[Number]:
+    """Return the numbers x (k,) of a mechanism that ``model`` builds; ``size``: (k,) how far their bounds are apart."""
+
+    def place(m: Model, value: float) -> None:
+        raise AssertionError("it is built")
+
+    def neighbour(k: int, value: float) -> Model:
+        return model(np.where(np.arange(len(x)) == k, value, x))
+
+    return [
+        Number(name, float(x[k]), place, partial(neighbour, k), reach=float(size[k])) for k, name in enumerate(names)
+    ]
 
 
 def built(what: str, build: Callable[..., Any], values: Mapping[str, Any]) -> Model:

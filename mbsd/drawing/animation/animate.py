@@ -91,7 +91,7 @@ def _target(name: str, path: object) -> tuple[Path, str]:
 
 
 def _groups(name: str, show: object) -> tuple[tuple[str, ...], ...]:
-    """The words of each panel."""
+    """Return the words of each panel."""
     if isinstance(show, str) and show == "all":
         return EVERYTHING
     words: list[str] = [show] if isinstance(show, str) else []

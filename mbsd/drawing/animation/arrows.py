@@ -68,7 +68,7 @@ class Moving:
 
 
 def moving(view: FrameView, x: float, y: float) -> Moving:
-    """The point (x, y) of a body whose frame moves like ``view`` (m)."""
+    """Return the point (x, y) of a body whose frame moves like ``view`` (m)."""
     c, s = np.cos(view.theta), np.sin(view.theta)
     arm = np.stack([c * x - s * y, s * x + c * y], axis=1)
     across = np.stack([-arm[:, 1], arm[:, 0]], axis=1)
@@ -90,7 +90,7 @@ def applied(sol: Solution) -> Iterator[tuple[Action, np.ndarray]]:
 
 
 def moving_marker(views: dict[str, FrameView], marker: Marker) -> Moving:
-    """The origin of a marker."""
+    """Return the origin of a marker."""
     return moving(views[marker.body.name], marker.x, marker.y)
 
 
@@ -121,7 +121,7 @@ def motion_arrows(m: Model, tracks: Tracks, quantity: str) -> list[Arrow | Arc]:
 
 
 def _markers(m: Model, name: str) -> list[Marker]:
-    """Where a body has joints and traced points; its centre of mass too, or a bar's end, if these are one place."""
+    """Return markers of joints and traced points; if these are one place, the centre of mass or a bar's end too."""
     joints = [*m.joints.values(), *(contact for contact in m.contacts.values() if contact.kind.drawn_as == "rope")]
     out = [marker for joint in joints for marker in (joint.j, joint.i) if marker.body.name == name]
     out += [marker for marker in m.traces.values() if marker.body.name == name]
@@ -142,7 +142,7 @@ def reaction_arrows(sol: Solution) -> list[Arrow | Arc]:
 
 
 def force_arrows(sol: Solution, tracks: Tracks) -> list[Arrow | Arc]:
-    """Forces of the model on each moving body that feels them, efforts of drivers on their second body, weights."""
+    """Return forces on each moving body, efforts of drivers on their second body, and weights."""
     m, out = sol.mechanism, []
     for action, place in applied(sol):
         out += [Arrow("forces", place, action.force), Arc("forces", place, action.torque)]
@@ -158,7 +158,7 @@ def force_arrows(sol: Solution, tracks: Tracks) -> list[Arrow | Arc]:
 
 
 def _wrench(sol: Solution, k: int, quantity: str) -> list[Arrow | Arc]:
-    """Force and torque of joint number ``k`` on the body that moves."""
+    """Return force and torque of joint number ``k`` on the body that moves."""
     on = felt(sol.packed, sol.q, sol.wrench, k)
     place = np.stack([on.x, on.y], axis=1)
     return [Arrow(quantity, place, on.force), Arc(quantity, place, on.torque)]
@@ -189,12 +189,12 @@ class Scale:
     """Whether some arrow is longer than it is drawn."""
 
     def part(self, size: np.ndarray | float) -> np.ndarray:
-        """Fraction of the full length, at most LONGEST."""
+        """Return the fraction of the full length, at most LONGEST."""
         return np.minimum(np.asarray(size) / self.largest, LONGEST)
 
 
 def scales_of(marks: Sequence[Arrow | Arc], floor: dict[str, float]) -> dict[str, Scale]:
-    """By unit, for those that are more than rounding: ``floor`` says what counts as nothing."""
+    """Return the scales by unit; a unit whose arrows are below ``floor``, which is rounding, has none."""
     out = {}
     by_unit: dict[str, list[np.ndarray]] = {}
     for mark in marks:
@@ -211,6 +211,6 @@ def scales_of(marks: Sequence[Arrow | Arc], floor: dict[str, float]) -> dict[str
 
 
 def unit_of(mark: Arrow | Arc) -> str:
-    """Unit of an arrow or an arc."""
+    """Return the unit of an arrow or an arc."""
     quantity = QUANTITIES[mark.quantity]
     return quantity.turning if isinstance(mark, Arc) else quantity.unit

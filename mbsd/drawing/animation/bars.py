@@ -9,7 +9,7 @@ import numpy as np
 from mbsd.base.quantity import live
 from mbsd.drawing.animation.brush import Brush, Colour, rgba
 from mbsd.drawing.animation.flow import Balance
-from mbsd.drawing.animation.names import lay, sprite
+from mbsd.drawing.animation.names import lay, paint_word, sprite
 from mbsd.drawing.animation.words import KINETIC, POTENTIAL, TAKEN
 from mbsd.drawing.look import INK, QUIET
 
@@ -49,19 +49,21 @@ class Bars:
         return self.largest > 1e-15
 
     def paint_still(self, figure: Any, renderer: Any) -> None:
-        """Words that stay."""
+        """Paint the words that do not change."""
         px, (left, low, width, _) = self.dpi / 100, self.box
         if self.has_energy:
             for k, word in enumerate(("kinetic", "potential", "sum")):
-                _word(figure, renderer, word, self._column(k), self.columns[1] - 13 * px, QUIET, 8.5, "center")
+                paint_word(figure, renderer, word, self._column(k), self.columns[1] - 13 * px, QUIET, 8.5, "center")
         if self.powers:
-            _word(figure, renderer, "takes", left + 2 * px, low + self.rows - 8 * px, TAKEN, 8.5, "left")
-            _word(figure, renderer, "gives", left + width - 2 * px, low + self.rows - 8 * px, KINETIC, 8.5, "right")
+            paint_word(figure, renderer, "takes", left + 2 * px, low + self.rows - 8 * px, TAKEN, 8.5, "left")
+            paint_word(
+                figure, renderer, "gives", left + width - 2 * px, low + self.rows - 8 * px, KINETIC, 8.5, "right"
+            )
             for k, name in enumerate(self.powers):
-                _word(figure, renderer, name, left + 2 * px, self._row(k) + self.above, INK, self.letters, "left")
+                paint_word(figure, renderer, name, left + 2 * px, self._row(k) + self.above, INK, self.letters, "left")
 
     def draw(self, brush: Brush, k: int) -> None:
-        """The bars at picture ``k``."""
+        """Draw the bars at picture ``k``."""
         left, _, width, _ = self.box
         kinetic, potential = float(self.balance.kinetic[k]), float(self.balance.potential[k])
         if self.has_energy:
@@ -77,7 +79,7 @@ class Bars:
             brush.stroke(np.array([(middle, y - 1.5 * half), (middle, y + 1.5 * half)]), rgba(QUIET), 1.0, 11)
 
     def lay_words(self, picture: np.ndarray, k: int) -> None:
-        """The numbers that live."""
+        """Lay the numbers of picture ``k`` over it."""
         px, (left, _, width, _) = self.dpi / 100, self.box
         if self.has_energy:
             values = (self.balance.kinetic[k], self.balance.potential[k], self.total[k])
@@ -109,9 +111,3 @@ class Bars:
 def _plate(brush: Brush, x: float, y: float, width: float, height: float, ink: Colour) -> None:
     corners = np.array([(x, y), (x + width, y), (x + width, y + height), (x, y + height)])
     brush.plate(corners, ink, None, 0.0, 10.5)
-
-
-def _word(figure: Any, renderer: Any, text: str, x: float, y: float, ink: str, size: float, side: str) -> None:
-    figure.text(
-        x, y, text, color=ink, fontsize=size, ha=side, va="center", transform=None, parse_math=False
-    ).draw(renderer)  # fmt: skip

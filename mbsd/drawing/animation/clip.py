@@ -50,7 +50,7 @@ class Clip:
 
 
 def clip_of(sol: Solution, rate: float | None, fps: float) -> Clip:
-    """The whole solution. ``rate`` None: real time, or a round part or multiple of it where that is too short or long.
+    """Return the clip of a whole solution. ``rate`` None: real time, or a round part of it if too short or long.
 
     Raises ModelError for a solution at a single time, and for more pictures than an animation may have.
     """
@@ -81,7 +81,7 @@ def clip_of(sol: Solution, rate: float | None, fps: float) -> Clip:
 
 
 def _round_rate(span: float) -> float:
-    """1 where ``span`` (s) is watchable, else the nearest of ..., 1/5, 1/2, 2, 5, ... that makes it so."""
+    """Return 1 if ``span`` (s) is watchable, else the nearest of ..., 1/5, 1/2, 2, 5, ... that makes it so."""
     rate, steps = 1.0, (2.0, 2.5, 2.0)
     for k in range(60):
         if span / rate < SHORTEST:
@@ -94,7 +94,7 @@ def _round_rate(span: float) -> float:
 
 
 def at_times(sol: Solution, times: np.ndarray) -> Solution:
-    """``sol`` at rising ``times`` (T,) within its own (s)."""
+    """Return ``sol`` at rising ``times`` (T,) within its own (s)."""
     if len(sol.t) == len(times) and np.array_equal(sol.t, times):
         return sol
     if sol.between is not None:
@@ -130,7 +130,7 @@ def at_times(sol: Solution, times: np.ndarray) -> Solution:
 def _quintic(
     sol: Solution, place: np.ndarray, after: np.ndarray, h: np.ndarray, s: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """q, v, a (T, nb, 3) at the parts ``s`` of steps ``h`` (s)."""
+    """Return q, v, a (T, nb, 3) at the parts ``s`` of steps ``h`` (s)."""
     q0, v0, a0 = sol.q[place], h * sol.v[place], h * h * sol.a[place]
     gap = sol.q[after] - q0 - v0 - 0.5 * a0
     slope = h * sol.v[after] - v0 - a0

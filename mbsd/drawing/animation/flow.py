@@ -29,7 +29,7 @@ class Balance:
 
 
 def flow_arrows(sol: Solution, tracks: Tracks) -> list[Arrow]:
-    """Through every joint from one body to the other; from drivers and forces into the bodies, or out of them."""
+    """Return arrows of power: through joints from body to body, from drivers and forces into bodies or out of them."""
     m, out = sol.mechanism, []
     middles = {name: _middle(m, tracks, name) for name in m.bodies if name != "ground"}
     drivers = set(m.drivers.values())
@@ -53,7 +53,7 @@ def flow_arrows(sol: Solution, tracks: Tracks) -> list[Arrow]:
 
 
 def balance_of(sol: Solution) -> Balance:
-    """Energies and powers of the whole mechanism."""
+    """Return energies and powers of the whole mechanism."""
     m, packed = sol.mechanism, sol.packed
     powers = {name: sol.driver(name).power for name in m.drivers}
     powers |= {name if name not in powers else f"force {name}": view.power for name, view in sol.forces.items()}
@@ -65,7 +65,7 @@ def balance_of(sol: Solution) -> Balance:
 
 
 def _middle(m: Model, tracks: Tracks, name: str) -> np.ndarray:
-    """(T, 2) of a body: its centre of mass, or the middle of its joints where it has none."""
+    """Return (T, 2) of a body: its centre of mass, or the middle of its joints where it has none."""
     body = m.bodies[name]
     here = [marker for joint in m.joints.values() for marker in (joint.i, joint.j) if marker.body is body]
     x, y = body.com
@@ -75,7 +75,7 @@ def _middle(m: Model, tracks: Tracks, name: str) -> np.ndarray:
 
 
 def _arrow(place: np.ndarray, way: np.ndarray, power: np.ndarray, force: np.ndarray, middle: bool) -> Arrow:
-    """Along ``way`` (T, 2) where power is positive; along the force where the way has no length."""
+    """Return an arrow along ``way`` (T, 2) where power is positive; along the force where the way has no length."""
     length = np.hypot(*way.T)
     short = length < 1e-9 * max(float(length.max()), 1e-12)
     way = np.where(short[:, None], force, way)

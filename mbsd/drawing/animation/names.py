@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -37,7 +38,7 @@ class Placed:
 def place_names(
     drawn: Sequence[Brush], frame: tuple[float, float, float, float], wanted: Sequence[int]
 ) -> list[Placed]:
-    """For the ``wanted`` labels of some pictures whose obstacles were kept; ``frame``: left, low, right, top."""
+    """Return places of the ``wanted`` labels from pictures that kept obstacles; ``frame``: left, low, right, top."""
     first = drawn[0]
     points = [brush.view.pixels(np.concatenate(brush.obstacles)) for brush in drawn]
     anchors = [brush.view.pixels([label.anchor for label in brush.labels]) for brush in drawn]
@@ -61,7 +62,7 @@ def place_names(
 
 
 def that_matter(m: Model) -> list[str]:
-    """Names in the order in which they matter: what is driven, what comes out, traced points, then all other bodies."""
+    """Return names by importance: the driven body, the output, traced points, then all other bodies."""
     driven = [name for driver in m.drivers.values() for name in driver.bodies if name != "ground"]
     grounded = [name for joint in m.joints.values() if "ground" in joint.bodies for name in joint.bodies[::-1]]
     out = [name for name in grounded if name != "ground" and name not in driven][-1:]
@@ -79,7 +80,7 @@ def _costs(
     taken: list[np.ndarray],
     frame: tuple[float, float, float, float],
 ) -> np.ndarray:
-    """(c,) of words with these middles (c, 2): what they cover, other words, the edge of the frame."""
+    """Return (c,) of words with these middles (c, 2): what they cover, other words, the edge of the frame."""
     inside = (np.abs(points - middles[:, None]) < size / 2).all(axis=-1).sum(axis=1)
     low, high = middles - size / 2, middles + size / 2
     boxes = np.array(taken).reshape(-1, 1, 4)
@@ -90,7 +91,7 @@ def _costs(
 
 @lru_cache(maxsize=512)
 def sprite(text: str, size: float, colour: str, dpi: float, bold: bool = False) -> np.ndarray:
-    """(h, w, 4) bytes of a word with a white rim; ``size`` in points."""
+    """Return (h, w, 4) bytes of a word with a white rim; ``size`` in points."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.patheffects import withStroke
@@ -111,7 +112,7 @@ def sprite(text: str, size: float, colour: str, dpi: float, bold: bool = False) 
 
 
 def lay(picture: np.ndarray, word: np.ndarray, x: float, y: float) -> None:
-    """``word`` over ``picture`` (H, W, 4), its middle at (x, y) pixels from the lower left."""
+    """Lay ``word`` over ``picture`` (H, W, 4), its middle at (x, y) pixels from the lower left."""
     height, width = picture.shape[:2]
     h, w = word.shape[:2]
     left, top = round(x - w / 2), round(height - y - h / 2)
@@ -122,3 +123,9 @@ def lay(picture: np.ndarray, word: np.ndarray, x: float, y: float) -> None:
     below = picture[y0:y1, x0:x1]
     cover = part[..., 3:]
     below[..., :3] = ((part[..., :3] * cover + below[..., :3] * (255 - cover)) // 255).astype(np.uint8)
+
+
+def paint_word(figure: Any, renderer: Any, text: str, x: float, y: float, ink: str, size: float, side: str) -> None:
+    """Write words with their ``side`` at x, their middle at height y (pixels)."""
+    word = figure.text(x, y, text, color=ink, fontsize=size, ha=side, va="center", transform=None, parse_math=False)
+    word.draw(renderer)

@@ -15,7 +15,7 @@ import numpy as np
 from mbsd.base.quantity import written
 from mbsd.drawing.animation.arrows import FULL_TURN, Arc, Arrow
 from mbsd.drawing.animation.brush import arc, arrow, fresh, rgba
-from mbsd.drawing.animation.names import sprite
+from mbsd.drawing.animation.names import paint_word, sprite
 from mbsd.drawing.animation.panel import LEGEND_ROW, Box, Panel, common_view
 from mbsd.drawing.animation.scene import Scene
 from mbsd.drawing.animation.trails import trails_of
@@ -72,7 +72,7 @@ class Page:
         self._begin()
 
     def picture(self, k: int) -> np.ndarray:
-        """(H, W, 4) bytes of picture ``k``; the next call changes them."""
+        """Return (H, W, 4) bytes of picture ``k``; the next call changes them."""
         self.renderer.restore_region(self.still)
         self.time.set_text(self._time(k))
         self.time.draw(self.renderer)
@@ -116,7 +116,7 @@ class Page:
         self.pixels = np.asarray(self.renderer.buffer_rgba())
 
     def _time(self, k: int) -> str:
-        """In as many decimals as tell the pictures apart."""
+        """Return the time in as many decimals as tell the pictures apart."""
         times = self.scene.clip.times
         step = float(np.ptp(times)) / max(1, len(times) - 1)
         decimals = min(9, max(1, math.ceil(-math.log10(max(step, 1e-12)))))
@@ -124,7 +124,7 @@ class Page:
         return f"t = {times[k]:.{decimals}f} s".rjust(longest + 6)
 
     def _boxes(self, count: int) -> list[Box]:
-        """Panels side by side: one, two in a row, four in two rows; three of which the first is as wide as two."""
+        """Return boxes of panels: one, two in a row, four in two rows; of three the last is as wide as two."""
         px, (width, height) = self.dpi / 100, self.size
         gap, top = GAP * px, height - HEADER * px
         columns = 1 if count == 1 else 2
@@ -240,12 +240,6 @@ def paint_legend(panel: Panel, figure: Any, renderer: Any) -> float:
             x += entry.width(px) + BETWEEN * px
     brush.paint(renderer)
     return x
-
-
-def paint_word(figure: Any, renderer: Any, text: str, x: float, y: float, ink: str, size: float, side: str) -> None:
-    """Write words with their ``side`` at x, their middle at height y (pixels)."""
-    word = figure.text(x, y, text, color=ink, fontsize=size, ha=side, va="center", transform=None, parse_math=False)
-    word.draw(renderer)
 
 
 def _entries(panel: Panel) -> list[Entry]:

@@ -55,7 +55,7 @@ class Panel:
         self.scales = scales_of(self.marks, self.scene.floor)
         self.marks = [mark for mark in self.marks if self._seen(mark)]
         self.colours = neutral_inks(self.scene.tracks.views) if self.quantities else self.scene.inks
-        self.brush = Brush(None, self.scene.unit, dpi=self.dpi, driver=QUIET if self.quantities else MOVED)
+        self.brush = Brush(None, self.scene.steady.unit, dpi=self.dpi, driver=QUIET if self.quantities else MOVED)
         self.arrange(1)
         self.impacts = impacts_of(self.scene)
 
@@ -82,18 +82,24 @@ class Panel:
         return scale is not None and float(mark.size.max()) > 2e-3 * scale.largest
 
     def extent(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lowest and highest x, y (m) of machine and arrows."""
+        """Return lowest and highest x, y (m) of machine and arrows."""
         scene, tips = self.scene, [np.zeros((0, 2))]
         for mark in self.marks:
             if isinstance(mark, Arrow):
                 vector = self._drawn(mark)
                 back = 0.5 * vector if mark.middle else 0.0
                 tips += [mark.place + vector - back, mark.place - back]
-        points = np.concatenate([scene.low[None] - AROUND * scene.unit, scene.high[None] + AROUND * scene.unit, *tips])
+        points = np.concatenate(
+            [
+                scene.steady.low[None] - AROUND * scene.steady.unit,
+                scene.steady.high[None] + AROUND * scene.steady.unit,
+                *tips,
+            ]
+        )
         return points.min(axis=0), points.max(axis=0)
 
     def _drawn(self, mark: Arrow) -> np.ndarray:
-        """(T, 2) of an arrow as it is drawn (m)."""
+        """Return (T, 2) of an arrow as it is drawn (m)."""
         size = mark.size
         part = self.scales[unit_of(mark)].part(size) * self.scene.length
         return mark.vector * np.divide(part, size, out=np.zeros_like(size), where=size > 0)[:, None]
@@ -115,7 +121,7 @@ class Panel:
 
     def _look_at(self, view: View) -> None:
         self.brush.view = view
-        self.brush.thin = min(1.0, max(0.3, self.scene.unit * view.scale * 100 / self.dpi / FINE))
+        self.brush.thin = min(1.0, max(0.3, self.scene.steady.unit * view.scale * 100 / self.dpi / FINE))
 
     def place_names(self) -> None:
         """Find places for the names; the view is final."""
@@ -137,7 +143,7 @@ class Panel:
         self.placed = place_names(drawn, self.room, wanted)
 
     def paint(self, renderer: Any, picture: np.ndarray, k: int) -> None:
-        """Machine, trails, arrows and names of picture ``k``."""
+        """Paint machine, trails, arrows and names of picture ``k``."""
         px, scene = self.dpi / 100, self.scene
         brush = fresh(self.brush, tints=self._tints(k))
         machine = scene.drawn(brush, k, self.colours)
@@ -151,7 +157,7 @@ class Panel:
             part = float(scale.part(size))
             at = brush.view.pixels(mark.place[k])
             if isinstance(mark, Arc):
-                radius = max(2.9 * scene.unit * brush.view.scale, 15 * px)
+                radius = max(2.9 * scene.steady.unit * brush.view.scale, 15 * px)
                 arc(
                     brush,
                     at,
@@ -175,7 +181,7 @@ class Panel:
             self.bars.lay_words(picture, k)
 
     def _tints(self, k: int) -> dict[str, tuple[str, float]]:
-        """In the picture of the energy, bodies glow with their kinetic energy."""
+        """Return fillings by colour: in the picture of the energy, bodies glow with their kinetic energy."""
         if self.bars is None or not self.bars.has_energy:
             return {}
         bodies = self.scene.balance.bodies

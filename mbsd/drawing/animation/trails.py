@@ -38,7 +38,7 @@ class Trail:
 
 
 def trails_of(whole: Solution, here: Solution) -> list[Trail]:
-    """Trails of all traced points, from the outputs and the pictures together."""
+    """Return the trails of all traced points, from the outputs and the pictures together."""
     times, first = np.unique(np.concatenate([whole.t, here.t]), return_index=True)
     jumps = np.array([event.time for event in whole.events])
     out = []
@@ -51,7 +51,7 @@ def trails_of(whole: Solution, here: Solution) -> list[Trail]:
 
 
 def draw_trails(brush: Brush, trails: list[Trail], clip: Clip, k: int) -> None:
-    """At picture ``k``: all of it, faint, if it repeats, else what was passed; the last part bright."""
+    """Draw trails at picture ``k``: whole and faint if the motion repeats, else so far; the last part bright."""
     now, span = float(clip.times[k]), float(np.ptp(clip.times)) * len(clip.times) / max(1, len(clip.times) - 1)
     for trail in trails:
         times, path = trail.times, trail.path
@@ -73,7 +73,7 @@ def draw_trails(brush: Brush, trails: list[Trail], clip: Clip, k: int) -> None:
 
 
 def _smooth(t: np.ndarray, x: np.ndarray, v: np.ndarray, jumps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Cubic pieces with the known velocities; straight ones where the velocity jumps."""
+    """Return cubic pieces with the known velocities; straight ones where the velocity jumps."""
     h = np.diff(t)[:, None, None]
     s = (np.arange(PARTS) / PARTS)[None, :, None]
     a, b, va, vb = x[:-1, None], x[1:, None], h * v[:-1, None], h * v[1:, None]
@@ -106,7 +106,7 @@ class Impact:
 
 
 def impacts_of(scene: Scene) -> list[Impact]:
-    """The hardest ones, that are worth a ring."""
+    """Return the hardest ones, that are worth a ring."""
     sol, m = scene.whole, scene.whole.mechanism
     hits = [event for event in sol.events if event.what == "impact" and event.name in m.contacts]
     most = max((abs(event.impulse) for event in hits), default=0.0)

@@ -23,7 +23,7 @@ ALIKE = 1e-9
 
 
 def draw_contacts(canvas: Canvas, contacts: Sequence[Joint], pose: Pose, colours: dict[str, str]) -> None:
-    """Every contact of a mechanism; feet on the same floor share its sign."""
+    """Draw every contact of a mechanism; feet on the same floor share its sign."""
     for feet in _floors(contacts):
         _floor(canvas, feet, pose, colours)
     for joint in contacts:
@@ -32,7 +32,7 @@ def draw_contacts(canvas: Canvas, contacts: Sequence[Joint], pose: Pose, colours
 
 
 def contact_reach(joint: Joint, pose: Pose) -> np.ndarray:
-    """(k, 2) points that a drawing of this contact must hold (m)."""
+    """Return (k, 2) points that a drawing of this contact must hold (m)."""
     i, j = pose.place(joint.i), pose.place(joint.j)
     out = [j + joint.params.get("radius", joint.params.get("radius_j", 0.0)) * ROUND]
     if joint.kind.touching == "line":
@@ -48,7 +48,7 @@ def contact_reach(joint: Joint, pose: Pose) -> np.ndarray:
 
 
 def _travel(joint: Joint, pose: Pose) -> np.ndarray:
-    """Places of the second marker along the x axis of the first (m), over the motion and now."""
+    """Return places of the second marker along the x axis of the first (m), over the motion and now."""
     here = float((pose.place(joint.j) - pose.place(joint.i)) @ pose.axis(joint.i))
     radius = joint.params.get("radius", 0.0)
     ways = np.append(pose.travel.get(f"contact {joint.name}", np.zeros(0)), here)
@@ -56,7 +56,7 @@ def _travel(joint: Joint, pose: Pose) -> np.ndarray:
 
 
 def _floors(contacts: Sequence[Joint]) -> list[list[Joint]]:
-    """Contacts with lines, together where these are the same line of a body."""
+    """Return contacts with lines, together where these are the same line of a body."""
     out: list[list[Joint]] = []
     for joint in contacts:
         if joint.kind.touching != "line":
@@ -94,7 +94,7 @@ def _terrain(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) 
 
 
 def _disc(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
-    """The disc about marker j, unless a point touches."""
+    """Draw the disc about marker j, unless a point touches."""
     name, radius = joint.j.body.name, joint.params.get("radius", 0.0)
     if radius > 0.0:
         turn = pose.frames[name][2] + joint.j.angle
@@ -103,7 +103,7 @@ def _disc(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> 
 
 
 def _discs(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
-    """The outer one as a ring where the other is inside."""
+    """Draw both discs, the outer one as a ring where the other is inside."""
     for marker, key in ((joint.i, "radius_i"), (joint.j, "radius_j")):
         name, centre, radius = marker.body.name, pose.place(marker), joint.params[key]
         colour = colours.get(name, QUIET)
@@ -116,7 +116,7 @@ def _discs(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) ->
 
 
 def _coordinate_stop(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
-    """A bar across the coordinate, where it ends."""
+    """Draw a bar across the coordinate, where it ends."""
     axis, colour = pose.axis(joint.i), colours.get(joint.i.body.name, INK)
     end = pose.place(joint.i) + joint.params["at"] * axis
     across = 1.5 * canvas.unit * np.array([-axis[1], axis[0]])
@@ -125,7 +125,7 @@ def _coordinate_stop(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str
 
 
 def _angle_stop(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
-    """A spoke where the angle ends."""
+    """Draw a spoke where the angle ends."""
     start, axis = pose.place(joint.i), pose.axis(joint.i)
     angle = math.atan2(axis[1], axis[0]) + joint.params["at"]
     out = canvas.unit * np.array([math.cos(angle), math.sin(angle)])
@@ -138,7 +138,7 @@ def _rope_line(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]
 
 
 def _rope(i: np.ndarray, j: np.ndarray, length: float) -> np.ndarray:
-    """(k, 2) straight where it is taut; where it is slack, a parabola of its length that hangs down."""
+    """Return (k, 2) straight where it is taut; where it is slack, a parabola of its length that hangs down."""
     gap = j - i
     distance = float(np.hypot(*gap))
     s = np.linspace(0.0, 1.0, 33)

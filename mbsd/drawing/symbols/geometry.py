@@ -59,14 +59,14 @@ class Place:
         return self.i if self.joint.i.body.name == "ground" else self.j
 
     def range(self, half: float) -> tuple[np.ndarray, np.ndarray]:
-        """Ends of a guide along the axis: the whole travel, at least ``half`` (m) to both sides of marker j."""
+        """Return the ends of a guide: the whole travel, at least ``half`` (m) to both sides of marker j."""
         here = float((self.j - self.i) @ self.axis)
         reached = np.append(self.pose.travel.get(self.joint.name, np.zeros(0)), here)
         return self.i + (reached.min() - half) * self.axis, self.i + (reached.max() + half) * self.axis
 
 
 def free_side(directions: list[float]) -> np.ndarray:
-    """Down, else up, left or right: the first with room beside the links that leave at these angles (rad)."""
+    """Return down, else up, left or right: the first with room beside links that leave at these angles (rad)."""
     best, room = -math.pi / 2, -1.0
     for side in (-math.pi / 2, math.pi / 2, math.pi, 0.0):
         nearest = min((abs((side - d + math.pi) % (2 * math.pi) - math.pi) for d in directions), default=math.pi)
@@ -81,7 +81,7 @@ ROUND = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1)], float)
 
 
 def reach(joint: Joint, pose: Pose) -> np.ndarray:
-    """(k, 2) points that a drawing of this joint must hold (m); none for joints without extent."""
+    """Return (k, 2) points that a drawing of this joint must hold (m); none for joints without extent."""
     params = with_radii(joint.params)
     out = [np.zeros((0, 2))]
     discs = ((joint.i, params.get("radius_i")), (joint.j, params.get("radius_j")), (joint.j, params.get("radius")))
@@ -104,20 +104,20 @@ def reach(joint: Joint, pose: Pose) -> np.ndarray:
 
 
 def placed(pose: Pose, marker: Marker, points: np.ndarray) -> np.ndarray:
-    """Points (k, 2) in the axes of a marker, in the world (m)."""
+    """Return points (k, 2) in the axes of a marker, in the world (m)."""
     axis = pose.axis(marker)
     return pose.place(marker) + points @ np.array([axis, [-axis[1], axis[0]]])
 
 
 def profile_of(params: Any) -> Any:
-    """The profile of a cam joint."""
+    """Return the profile of a cam joint."""
     from mbsd.model.cams.followers import cam_from
 
     return cam_from(params["profile"])
 
 
 def geneva_radius(joint: Joint, pose: Pose) -> float:
-    """Radius of the wheel (m): the pin enters the slots at its rim."""
+    """Return the radius of the wheel (m): the pin enters the slots at its rim."""
     distance = float(np.hypot(*(pose.place(joint.j) - pose.place(joint.i))))
     return distance * math.cos(math.pi / joint.params["slots"])
 
@@ -126,7 +126,7 @@ ARC_STEP = math.radians(10)
 
 
 def hull(points: np.ndarray) -> np.ndarray:
-    """(k, 2) corners of the convex hull, counter-clockwise (monotone chain); one or two points stay as they are."""
+    """Return (k, 2) corners of the convex hull, counter-clockwise; one or two points stay as they are."""
     unique = sorted({(float(x), float(y)) for x, y in points})
     if len(unique) < 3:
         return np.array(unique)
@@ -143,7 +143,7 @@ def hull(points: np.ndarray) -> np.ndarray:
 
 
 def rounded(points: np.ndarray, radius: float) -> np.ndarray:
-    """(k, 2) closed outline at ``radius`` around the hull of ``points``: a disc, a stadium, a rounded polygon."""
+    """Return a closed outline (k, 2) at ``radius`` around the hull of ``points``."""
     corners = hull(points)
     if len(corners) == 1:
         return corners[0] + radius * _arc(0.0, 2 * math.pi)

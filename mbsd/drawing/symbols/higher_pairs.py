@@ -24,7 +24,7 @@ BACK = 1.3
 
 
 def draw_rack(canvas: Canvas, place: Place) -> None:
-    """A rack along the x axis of marker i, whose teeth mesh with those of the pinion about marker j."""
+    """Draw a rack along the x axis of marker i, whose teeth mesh with those of the pinion about marker j."""
     sized, u, axis = with_radii(place.joint.params), canvas.unit, place.axis
     radius = sized["radius"]
     normal = np.array([-axis[1], axis[0]])
@@ -43,7 +43,7 @@ def draw_rack(canvas: Canvas, place: Place) -> None:
     colour = place.colours.get(place.joint.i.body.name, QUIET)
     with canvas.on(on_body(place.joint.i.body.name)):
         canvas.shape(np.vstack([outline, ends]), edge=colour, fill=colour, width=1.3, order=1.8, alpha=0.12)
-        canvas.line([foot + a * axis, foot + b * axis], colour, 0.7, order=1.9, linestyle=(0, (8, 2, 2, 2)))
+        canvas.line([foot + a * axis, foot + b * axis], colour, 0.7, order=1.9, dash=(8, 2, 2, 2))
         if place.joint.i.body.name == "ground":
             canvas.hatched(ends[1], ends[0], -normal)
     with canvas.on(on_body(name)):
@@ -53,7 +53,7 @@ def draw_rack(canvas: Canvas, place: Place) -> None:
 
 
 def draw_rolling_disc(canvas: Canvas, place: Place) -> None:
-    """A disc about marker j on the x axis of marker i."""
+    """Draw a disc about marker j on the x axis of marker i."""
     radius, axis = place.joint.params["radius"], place.axis
     a, b = place.range(BESIDE * radius)
     draw_way(canvas, np.array([a, b]), place.joint.i.body.name, place.colours)
@@ -64,7 +64,7 @@ def draw_rolling_disc(canvas: Canvas, place: Place) -> None:
 
 
 def draw_rolling_on_curve(canvas: Canvas, place: Place) -> None:
-    """A disc about marker j on a curve fixed to marker i."""
+    """Draw a disc about marker j on a curve fixed to marker i."""
     draw_way(canvas, _curve(place), place.joint.i.body.name, place.colours)
     _disc(canvas, place, place.joint.params["radius"])
     with canvas.on(at_place(place.joint.j)):
@@ -72,7 +72,7 @@ def draw_rolling_on_curve(canvas: Canvas, place: Place) -> None:
 
 
 def draw_point_on_curve(canvas: Canvas, place: Place) -> None:
-    """A point on a curve fixed to marker i, or a disc that slides beside it."""
+    """Draw a point on a curve fixed to marker i, or a disc that slides beside it."""
     path = _curve(place)
     ground = place.joint.i.body.name == "ground"
     with canvas.on(on_body(place.joint.i.body.name)):
@@ -106,7 +106,7 @@ OUTLINE_POINTS = 240
 
 
 def draw_cam(canvas: Canvas, place: Place) -> None:
-    """The disc at marker i, and a roller about marker j or a face along its x axis."""
+    """Draw the disc at marker i, and a roller about marker j or a face along its x axis."""
     joint = place.joint
     profile = profile_of(joint.params)
     outline = profile.outline[:: max(1, len(profile.outline) // OUTLINE_POINTS)]
@@ -115,7 +115,7 @@ def draw_cam(canvas: Canvas, place: Place) -> None:
     circle = profile.sizes["base_radius"] * np.stack([np.cos(turn), np.sin(turn)], axis=1)
     with canvas.on(on_body(joint.i.body.name)):
         canvas.shape(placed(place.pose, joint.i, outline), edge=colour, fill=colour, width=1.5, order=1.8, alpha=0.14)
-        canvas.line(place.i + circle, colour, 0.7, order=1.9, linestyle=(0, (8, 2, 2, 2)))
+        canvas.line(place.i + circle, colour, 0.7, order=1.9, dash=(8, 2, 2, 2))
     follower = place.colours.get(joint.j.body.name, QUIET)
     if profile.flat:
         axis = place.pose.axis(joint.j)
@@ -139,19 +139,18 @@ PIN, WIDE = 0.5, 0.6
 
 
 def draw_geneva(canvas: Canvas, place: Place) -> None:
-    """The crank is drawn over the wheel."""
+    """Draw the wheel, and over it the crank with its pin and locking disc."""
     joint, u = place.joint, canvas.unit
     slots, radius = joint.params["slots"], joint.params["radius"]
     distance = float(np.hypot(*(place.j - place.i)))
     rim = geneva_radius(joint, place.pose)
     wide = min(WIDE * u, 0.25 * rim * math.sin(math.pi / slots))
-    turned = place.pose.axis(joint.j)
     wheel = place.colours.get(joint.j.body.name, QUIET)
     outline = _wheel(slots, distance, radius, rim, wide)
     with canvas.on(on_body(joint.j.body.name)):
-        canvas.shape(_placed(place.j, turned, outline), edge=wheel, fill=wheel, width=1.4, order=1.8, alpha=0.14)
+        canvas.shape(placed(place.pose, joint.j, outline), edge=wheel, fill=wheel, width=1.4, order=1.8, alpha=0.14)
     crank = place.colours.get(joint.i.body.name, QUIET)
-    lock = _placed(place.i, place.axis, _lock(slots, distance - rim, LOCK * radius))
+    lock = placed(place.pose, joint.i, _lock(slots, distance - rim, LOCK * radius))
     pin = place.i + radius * place.axis
     with canvas.on(on_body(joint.i.body.name)):
         canvas.shape(lock, edge=crank, fill=crank, width=1.2, order=1.9, alpha=0.14)
@@ -160,12 +159,8 @@ def draw_geneva(canvas: Canvas, place: Place) -> None:
         canvas.label(joint.name, pin, 0.7)
 
 
-def _placed(centre: np.ndarray, axis: np.ndarray, points: np.ndarray) -> np.ndarray:
-    return centre + points @ np.array([axis, [-axis[1], axis[0]]])
-
-
 def _wheel(slots: int, distance: float, radius: float, rim: float, wide: float) -> np.ndarray:
-    """(k, 2) outline with a slot along the x axis and locking arcs between the slots."""
+    """Return (k, 2) outline with a slot along the x axis and locking arcs between the slots."""
     lock = LOCK * radius
     edge = math.asin(wide / rim)
     bottom = distance - radius
@@ -183,7 +178,7 @@ def _wheel(slots: int, distance: float, radius: float, rim: float, wide: float) 
 
 
 def _lock(slots: int, room: float, lock: float) -> np.ndarray:
-    """(k, 2) outline of the locking disc, cut away towards the pin (the x axis) for the wheel's tips."""
+    """Return (k, 2) outline of the locking disc, cut away towards the pin (the x axis) for the wheel's tips."""
     half = math.pi / 2 - math.pi / slots
     arc = np.linspace(half, 2 * math.pi - half, 61)
     rim = lock * np.stack([np.cos(arc), np.sin(arc)], axis=1)

@@ -35,7 +35,7 @@ WIDE, NARROW = 0.65, 0.3
 
 
 def draw_force(canvas: Canvas, force: Force, pose: Pose, joints: Sequence[Joint] = ()) -> None:
-    """The sign of what the force's first element measures; ``joints`` are those of the mechanism."""
+    """Draw the sign of a force by its first element; ``joints`` are those of the mechanism."""
     i, j = pose.place(force.i), pose.place(force.j)
     if force.kind.sign == "engine cylinder":
         draw_engine_cylinder(canvas, force, pose, joints)
@@ -64,7 +64,7 @@ def draw_force(canvas: Canvas, force: Force, pose: Pose, joints: Sequence[Joint]
             canvas.label(force.name, tail, 0.4, LOAD)
     elif force.kind.sign == "attraction":
         with canvas.on(along_line(force.i, force.j)):
-            canvas.line([i, j], LOAD, 1.0, order=3, linestyle=(0, (1, 2)))
+            canvas.line([i, j], LOAD, 1.0, order=3, dash=(1, 2))
             canvas.label(force.name, (i + j) / 2, 0.4, LOAD)
     elif element.kind == LINE or len(force.kind.elements(force)) == 1:
         end = i + float((j - i) @ pose.axis(force.i)) * pose.axis(force.i) if element.kind == AXIS else j
@@ -85,7 +85,7 @@ def draw_force(canvas: Canvas, force: Force, pose: Pose, joints: Sequence[Joint]
 
 
 def force_reach(force: Force, pose: Pose, joints: Sequence[Joint] = ()) -> np.ndarray:
-    """(k, 2) of what a force's sign needs beside its bodies; ``joints`` are those of the mechanism."""
+    """Return (k, 2) of what a force's sign needs beside its bodies; ``joints`` are those of the mechanism."""
     if force.kind.sign == "engine cylinder":
         return engine_cylinder_reach(force, pose, joints)
     if force.kind.sign == "mesh":
@@ -101,7 +101,7 @@ def force_reach(force: Force, pose: Pose, joints: Sequence[Joint] = ()) -> np.nd
 
 
 def draw_special(canvas: Canvas, force: Force, pose: Pose) -> None:
-    """A ring where the force acts, on each of its bodies; with the surface and the disc if it is a contact."""
+    """Draw a ring where the force acts, on each of its bodies; surface and disc too if it is a contact."""
     if force.kind.surface is not None:
         _surface(canvas, force, pose)
     bodies = force.params.get("bodies", ())
@@ -115,7 +115,7 @@ def draw_special(canvas: Canvas, force: Force, pose: Pose) -> None:
 
 
 def _journal(canvas: Canvas, force: Force, pose: Pose) -> None:
-    """A pin, and round it the bearing with play that one can see."""
+    """Draw a pin, and round it the bearing with visible play."""
     with canvas.on(at_place(force.i)):
         canvas.circle(pose.place(force.i), BEARING, edge=LOAD, order=7.8, width=1.3)
     with canvas.on(at_place(force.j)):
@@ -124,8 +124,9 @@ def _journal(canvas: Canvas, force: Force, pose: Pose) -> None:
 
 
 def _surface(canvas: Canvas, force: Force, pose: Pose) -> None:
-    """The profile or line as far as the body comes, with strokes on the solid side where it is ground's, and the disc
-    that touches it.
+    """Draw the profile or line as far as the body comes, and the disc that touches it.
+
+    A line of ground has strokes on its solid side.
     """
     radius, body = force.params["radius"], force.i.body.name
     path = surface_way(force, pose, max(BESIDE * radius, 3.0 * canvas.unit))
@@ -143,7 +144,7 @@ def _keeps_width(force: Force, pose: Pose, end: np.ndarray, unit: float) -> bool
 
 
 def _coil(canvas: Canvas, name: str, i: np.ndarray, j: np.ndarray, damped: bool) -> None:
-    """A spring; beside it a dashpot where there is damping."""
+    """Draw a spring; beside it a dashpot where there is damping."""
     length = float(np.hypot(*(j - i)))
     if length < 0.2 * canvas.unit:
         canvas.circle(j, 0.9, edge=LOAD, order=3.2, width=1.2, alpha=0.3)
@@ -170,7 +171,7 @@ def _coil(canvas: Canvas, name: str, i: np.ndarray, j: np.ndarray, damped: bool)
 
 
 def _turning(canvas: Canvas, force: Force, centre: np.ndarray) -> None:
-    """A spiral spring; an arrow around the centre where it is a torque from outside or a motor."""
+    """Draw a spiral spring; an arrow around the centre where it is a torque from outside or a motor."""
     terms = [term.kind for element in force.kind.elements(force) for term in element.terms]
     spring = LINEAR in terms or "stiffness" in force.laws or "of_angle" in force.laws or "law" in force.params
     turn = np.linspace(-0.4, 5 * math.pi if spring else 1.2 * math.pi, 90)
@@ -183,7 +184,7 @@ def _turning(canvas: Canvas, force: Force, centre: np.ndarray) -> None:
 
 
 def _arrow(canvas: Canvas, at: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """The arrow of a force from outside; returns its tail (m)."""
+    """Return the arrow of a force from outside; returns its tail (m)."""
     tail = at - 4.0 * canvas.unit * along
     tip = at - 0.75 * canvas.unit * along
     canvas.line([tail, tip - 0.5 * canvas.unit * along], LOAD, 2.0, order=9.5)
@@ -200,7 +201,7 @@ SLENDER = 0.07
 
 
 def draw_engine_cylinder(canvas: Canvas, force: Force, pose: Pose, joints: Sequence[Joint]) -> None:
-    """Barrel and head in true size, the piston's crown, and valves that stand open or closed, ports likewise."""
+    """Draw barrel and head in true size, the piston's crown, and valves and ports, open or closed."""
     origin, u = pose.place(force.i), pose.axis(force.i)
     n = np.array([-u[1], u[0]])
     half = max(0.5 * force.params["bore"], 0.5 * canvas.unit)
@@ -226,7 +227,7 @@ def draw_engine_cylinder(canvas: Canvas, force: Force, pose: Pose, joints: Seque
 
 
 def engine_cylinder_reach(force: Force, pose: Pose, joints: Sequence[Joint]) -> np.ndarray:
-    """(4, 2) corners of the barrel (m)."""
+    """Return (4, 2) corners of the barrel (m)."""
     origin, u = pose.place(force.i), pose.axis(force.i)
     n, half = np.array([-u[1], u[0]]), 0.5 * force.params["bore"]
     _, head, low, _ = _barrel(force, pose, joints, half)
@@ -236,7 +237,7 @@ def engine_cylinder_reach(force: Force, pose: Pose, joints: Sequence[Joint]) -> 
 def _barrel(
     force: Force, pose: Pose, joints: Sequence[Joint], half: float
 ) -> tuple[float, float, float, Sequence[Opening]]:
-    """Places of crown, head and end along the axis (m), and what is open; the head is at the marker if not known."""
+    """Return crown, head and end along the axis (m), and what is open; an unknown head is at the marker."""
     here = float((pose.place(force.j) - pose.place(force.i)) @ pose.axis(force.i))
     ways = np.append(pose.travel.get(f"force {force.name}", np.zeros(0)), here)
     low = float(ways.max()) + SKIRT * half
@@ -251,7 +252,7 @@ def _barrel(
 
 
 def draw_strut(canvas: Canvas, force: Force, pose: Pose) -> None:
-    """The barrel on the first point, and the rod with its piston on the second."""
+    """Draw the barrel on the first point, and the rod with its piston on the second."""
     i, j = pose.place(force.i), pose.place(force.j)
     gap = float(np.hypot(*(j - i)))
     if gap <= 0.0:

@@ -24,7 +24,7 @@ MOST = 400
 
 
 def draw_way(canvas: Canvas, path: np.ndarray, body: str, colours: dict[str, str]) -> None:
-    """A line or curve of a body that something runs on, on its left; ground's has strokes on the other side."""
+    """Draw a line or curve of a body that something runs on, on its left; ground's has strokes on the right."""
     with canvas.on(on_body(body)):
         if body == "ground":
             _hatched(canvas, path)
@@ -46,8 +46,10 @@ def _hatched(canvas: Canvas, path: np.ndarray) -> None:
 
 
 def curve_way(joint: Joint, pose: Pose, key: str) -> np.ndarray:
-    """(k, 2) of the spline through the points of a joint or contact, in the world (m); an open one goes on along its
-    end tangents as far as what touches it comes, and a little more. ``key``: its name in ``pose.travel``.
+    """Return (k, 2) of the spline through the points of a joint or contact, in the world (m).
+
+    An open one goes on along its end tangents as far as what touches it comes, and a little more. ``key``: its name in
+    ``pose.travel``.
     """
     points = tuple((float(x), float(y)) for x, y in joint.params["points"])
     path, ways = _spline(points, joint.params["closed"])
@@ -65,8 +67,10 @@ def curve_way(joint: Joint, pose: Pose, key: str) -> np.ndarray:
 
 
 def surface_way(force: Force, pose: Pose, beyond: float, whole: bool = True) -> np.ndarray:
-    """(k, 2) of the profile or the straight line that a contact force acts on, in the world (m): as far as its body
-    comes and ``beyond`` (m). ``whole``: with all of a profile, even where its body never comes.
+    """Return (k, 2) of the profile or straight line that a contact force acts on, in the world (m).
+
+    It goes as far as its body comes and ``beyond`` (m). ``whole``: with all of a profile, even where its body never
+    comes.
     """
     seen = _seen(force.i, force.j, pose, f"force {force.name}")[:, 0]
     x, profile = np.array([seen.min() - beyond, seen.max() + beyond]), force.laws.get("profile")
@@ -79,7 +83,7 @@ def surface_way(force: Force, pose: Pose, beyond: float, whole: bool = True) -> 
 
 
 def _seen(i: Marker, j: Marker, pose: Pose, key: str) -> np.ndarray:
-    """(T, 2) places of marker j in the axes of marker i (m), over the motion and now."""
+    """Return (T, 2) places of marker j in the axes of marker i (m), over the motion and now."""
     axis, gap = pose.axis(i), pose.place(j) - pose.place(i)
     here = np.array([[gap @ axis, gap @ np.array([-axis[1], axis[0]])]])
     if key not in pose.travel:
@@ -89,7 +93,7 @@ def _seen(i: Marker, j: Marker, pose: Pose, key: str) -> np.ndarray:
 
 @lru_cache(maxsize=32)
 def _spline(points: tuple[tuple[float, float], ...], closed: bool) -> tuple[np.ndarray, np.ndarray | None]:
-    """(k, 2) in the axes of the marker (m), and unit vectors out of both ends of an open curve."""
+    """Return (k, 2) in the axes of the marker (m), and unit vectors out of both ends of an open curve."""
     from mbsd.model.plane_curves import curve_pieces, end_ways
 
     breaks, coefficients = curve_pieces(np.array(points), closed)

@@ -48,7 +48,7 @@ class Lifter:
 
 
 def add_lifter(m: Mechanism, figure: Figure, arms: MassProperties | None) -> Lifter:
-    """Foot, shank, thigh and trunk, joined, with moments at the joints; ``arms`` are fixed to the trunk."""
+    """Add foot, shank, thigh and trunk, joined, with moments at the joints; ``arms`` are fixed to the trunk."""
     trunk = figure.limb("trunk")
     if arms is not None:
         trunk = combined((trunk, arms))
@@ -66,14 +66,14 @@ def add_lifter(m: Mechanism, figure: Figure, arms: MassProperties | None) -> Lif
 
 
 def add_body(m: Mechanism, name: str, given: MassProperties, length: float | None = None) -> Body:
-    """A body with these mass properties; a bar where it has a length (m)."""
+    """Return a body with these mass properties; a bar where it has a length (m)."""
     if length is None:
         return m.body(name, given.mass, given.com, given.inertia)
     return m.bar(name, length, given.mass, given.com, given.inertia)
 
 
 def add_barbell(m: Mechanism, load: float, carrier: Body, x: float, y: float) -> Body:
-    """A barbell of ``load`` (kg) on the body ``carrier`` at (x, y) of its frame (m); its middle is traced."""
+    """Return a barbell of ``load`` (kg) on the body ``carrier`` at (x, y) of its frame (m); its middle is traced."""
     mass = not_below(m.name, "load", load, 0.0, "kg")
     barbell = m.body("barbell", mass, (0.0, 0.0), mass * BAR_INERTIA)
     m.revolute("bar", carrier.at(x, y), barbell.origin)
@@ -83,7 +83,7 @@ def add_barbell(m: Mechanism, load: float, carrier: Body, x: float, y: float) ->
 
 
 def not_below(mechanism: str, name: str, value: float, least: float, unit: str) -> float:
-    """A finite number of at least ``least``. Raises ModelError."""
+    """Return a finite number of at least ``least``. Raises ModelError."""
     number = finite_number(f"{mechanism}: {name}", value)
     if number < least:
         raise ModelError(f"{mechanism}: {name} is {number:g} {unit}; it must be {least:g} {unit} or more")
@@ -91,7 +91,7 @@ def not_below(mechanism: str, name: str, value: float, least: float, unit: str) 
 
 
 def ends_given(mechanism: str, name: str, ends: tuple[float, float], least: float, most: float) -> tuple[float, float]:
-    """Angles at the bottom and at the top in DEGREES, as radians. Raises ModelError beyond ``least`` .. ``most``."""
+    """Return two angles given in DEGREES, as radians. Raises ModelError beyond ``least`` .. ``most``."""
     if len(ends) != 2:
         raise ModelError(f"{mechanism}: {name} has {len(ends)} values; give degrees at the bottom and at the top")
     for place, degrees in zip(("bottom", "top"), ends, strict=True):
@@ -131,7 +131,7 @@ class Tempo:
         return self.up, self.up + self.hold, self.up + self.hold + self.down
 
     def part(self, time: float) -> tuple[float, float, float]:
-        """How much of the way from bottom to top is made at a time (s), with rate (1/s) and acceleration (1/s^2)."""
+        """Return the part of the way from bottom to top at a time (s), with rate (1/s) and acceleration (1/s^2)."""
         t = time % self.period
         _, begin, end = self.breaks
         if t >= end:
@@ -144,7 +144,7 @@ class Tempo:
 
 
 def repetition(bottom: float, top: float, tempo: Tempo) -> Motion:
-    """The law (rad or m) of a repetition that begins at the bottom; a law that holds where both ends are the same."""
+    """Return the law (rad or m) of a repetition that begins at the bottom; constant if both ends are the same."""
     way = top - bottom
     if way == 0.0:
         from mbsd.model.laws.polynomial import polynomial

@@ -47,7 +47,7 @@ def squat(
     tempo: Tempo | None = None,
     name: str = "squat",
 ) -> Mechanism:
-    """A figure that squats with a barbell of ``load`` (kg) on its back; see :func:`mbsd.machines.body.lift.lifted`.
+    """Return a figure that squats with a barbell of ``load`` (kg); solve it with mbsd.machines.body.lift.lifted.
 
     ``shank``, ``thigh``: leans at the bottom and at the top (DEGREES). ``bar``: of the barbell's middle, along the
     trunk from the hip and behind its axis (m), by default on the shoulders. ``line``: of the bar in front of the ankle
@@ -83,7 +83,7 @@ def deadlift(
     tempo: Tempo | None = None,
     name: str = "deadlift",
 ) -> Mechanism:
-    """A figure that lifts a barbell of ``load`` (kg) from the floor; see :func:`mbsd.machines.body.lift.lifted`.
+    """Return a figure that lifts a barbell of ``load`` (kg); solve it with mbsd.machines.body.lift.lifted.
 
     ``shank``, ``thigh``: leans at the bottom and at the top (DEGREES). ``floor``: height of the bar at the bottom, the
     radius of its plates (m); at the top the trunk is upright. ``line``: of the bar in front of the ankle (m), by
@@ -127,7 +127,7 @@ def bar_on_shoulders(figure: Figure) -> tuple[float, float]:
 
 
 def hip_at(figure: Figure, shank: float, thigh: float) -> complex:
-    """The hip's place (m) at leans of shank and thigh (rad), as x + i y."""
+    """Return the hip's place (m) at leans of shank and thigh (rad), as x + i y."""
     knee = 1j * figure.length("ankle") + figure.length("shank") * 1j * cmath.exp(-1j * shank)
     return knee + figure.length("thigh") * 1j * cmath.exp(1j * thigh)
 
@@ -135,7 +135,7 @@ def hip_at(figure: Figure, shank: float, thigh: float) -> complex:
 def _stand(
     m: Mechanism, lifter: Lifter, shanks: tuple[float, float], thighs: tuple[float, float], tempo: Tempo
 ) -> None:
-    """Feet on the floor, and guides of shank and thigh."""
+    """Add feet on the floor, and guides of shank and thigh."""
     m.weld("floor", m.ground.at(0.0, lifter.figure.length("ankle")), lifter.foot.origin)
     quarter = math.pi / 2
     m.drive_angle("shank_lean", lifter.shank, repetition(-quarter - shanks[0], -quarter - shanks[1], tempo))
@@ -153,7 +153,7 @@ def _hanging_arms(m: Mechanism, lifter: Lifter) -> Body:
 
 
 def _lean(bar: complex, ahead: float, name: str) -> float:
-    """The trunk's lean (rad) that brings the bar, at ``bar`` of its frame, ``ahead`` (m) in front of the hip."""
+    """Return the trunk's lean (rad) that brings the bar, at ``bar`` of its frame, ``ahead`` (m) in front of the hip."""
     if abs(ahead) >= abs(bar):
         raise ModelError(
             f"{name}: the bar's line is {ahead:.3g} m in front of the hip, but the bar is {abs(bar):.3g} m from it; "

@@ -74,7 +74,7 @@ class Block:
 def mounts_of_frequency(
     mass: float, frequency: float, at: Sequence[tuple[float, float]], damping_ratio: float = 0.1
 ) -> tuple[Mount, ...]:
-    """Equal mounts at the places ``at`` (m) on which a mass (kg) has a natural frequency (Hz) along x and y.
+    """Return equal mounts at places ``at`` (m) on which a mass (kg) has a natural frequency (Hz) along x and y.
 
     Raises ModelError for numbers that are not positive.
     """
@@ -114,19 +114,19 @@ class MountResponse:
     """Natural frequencies, damping and shapes on the mounts, by rising frequency."""
 
     def largest_displacement(self) -> np.ndarray:
-        """(S,) largest distance of the shaft's axis from its mean place in a cycle (m), all orders together."""
+        """Return (S,) largest distance of the shaft's axis from its mean place in a cycle (m), all orders together."""
         return np.linalg.norm(self._cycle(self.displacement)[:, :, :2], axis=2).max(axis=1)
 
     def largest_angle(self) -> np.ndarray:
-        """(S,) largest angle of the block from its mean in a cycle (rad), all orders together."""
+        """Return (S,) largest angle of the block from its mean in a cycle (rad), all orders together."""
         return np.abs(self._cycle(self.displacement)[:, :, 2]).max(axis=1)
 
     def largest_force(self) -> np.ndarray:
-        """(S,) largest force of all mounts on ground beside its mean in a cycle (N), all orders together."""
+        """Return (S,) largest force of all mounts on ground beside its mean in a cycle (N), all orders together."""
         return np.linalg.norm(self._cycle(self.force)[:, :, :2], axis=2).max(axis=1)
 
     def _cycle(self, amplitude: np.ndarray) -> np.ndarray:
-        """(S, phases, 3)"""
+        """Return (S, phases, 3)"""
         turned = np.exp(2j * math.pi * self.turns * np.outer(PHASES, self.order))
         return (turned @ amplitude).real
 
@@ -168,7 +168,7 @@ def mount_response(
 
 
 def _orders(what: str, orders: Sequence[float] | None, turns: int) -> np.ndarray:
-    """(K,) of a cycle of ``turns``."""
+    """Return (K,) of a cycle of ``turns``."""
     if orders is None:
         return np.arange(1, HIGHEST * turns + 1) / turns
     order = number_array(f"{what}: orders", orders)
@@ -183,7 +183,7 @@ def _orders(what: str, orders: Sequence[float] | None, turns: int) -> np.ndarray
 
 
 def _forces(m: Mechanism, speed: np.ndarray, order: np.ndarray, turns: int) -> np.ndarray:
-    """(S, K, 3) complex force (N) and moment about the block's centre of mass (N m) on the block.
+    """Return (S, K, 3) complex force (N) and moment about the block's centre of mass (N m) on the block.
 
     Gas and weight push alike at every speed, inertia with its square: two sweeps tell both.
     """
@@ -194,7 +194,7 @@ def _forces(m: Mechanism, speed: np.ndarray, order: np.ndarray, turns: int) -> n
 
 
 def _held(m: Mechanism, rate: float, order: np.ndarray, turns: int) -> np.ndarray:
-    """(K, 3) of the block held still at a speed (rad/s)."""
+    """Return (K, 3) of the block held still at a speed (rad/s)."""
     held = m.with_efforts()
     block = held.bodies["block"]
     held.weld("held still", held.ground.origin, block.origin)

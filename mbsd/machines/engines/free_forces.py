@@ -45,32 +45,32 @@ class FreeForces:
     couple: Turning
 
     def index(self, order: int) -> int:
-        """The row of an order."""
+        """Return the row of an order."""
         return int(np.flatnonzero(self.order == order)[0])
 
 
-def free_forces(of: Layout, ratio: float | None = None, orders: Sequence[int] = ORDERS) -> FreeForces:
-    """Forces of the moving masses of a layout.
+def free_forces(plan: Layout, ratio: float | None = None, orders: Sequence[int] = ORDERS) -> FreeForces:
+    """Return forces of the moving masses of a layout.
 
     ``ratio``: crank radius over rod; None: all A_n 1, the layout's share alone.
     """
     order = np.asarray(orders)
     size = np.ones(len(order), complex) if ratio is None else piston_harmonics(ratio, int(order.max()))[order - 1]
-    axis = np.exp(1j * (of.banks + 0.5 * np.pi))
-    lead = order[:, None] * (of.throws - of.banks)
+    axis = np.exp(1j * (plan.banks + 0.5 * np.pi))
+    lead = order[:, None] * (plan.throws - plan.banks)
     forward = 0.5 * size[:, None] * np.exp(1j * lead) * axis
     backward = 0.5 * size.conj()[:, None] * np.exp(-1j * lead) * axis
-    return _summed(order, forward, backward, of.z)
+    return _summed(order, forward, backward, plan.z)
 
 
-def rotating_forces(of: Layout) -> FreeForces:
-    """Forces of masses at the crank pins (the big ends and throws), one unit of m r w^2 each."""
-    forward = 1j * np.exp(1j * of.throws)[None, :]
-    return _summed(np.array([1]), forward, np.zeros_like(forward), of.z)
+def rotating_forces(plan: Layout) -> FreeForces:
+    """Return forces of masses at the crank pins (the big ends and throws), one unit of m r w^2 each."""
+    forward = 1j * np.exp(1j * plan.throws)[None, :]
+    return _summed(np.array([1]), forward, np.zeros_like(forward), plan.z)
 
 
 def _summed(order: np.ndarray, forward: np.ndarray, backward: np.ndarray, z: np.ndarray) -> FreeForces:
-    """Sums over (K, N) cylinders; k x F is F turned by a quarter."""
+    """Return sums over (K, N) cylinders; k x F is F turned by a quarter."""
     return FreeForces(
         order,
         Turning(forward.sum(axis=1), backward.sum(axis=1)),
@@ -84,7 +84,7 @@ LONGEST = 0.98
 
 
 def piston_harmonics(ratio: float, count: int = 8, offset: float = 0.0) -> np.ndarray:
-    """(count,) complex A_n e^(i d_n) of orders 1 .. count, in units of r w^2; real where ``offset`` is 0.
+    """Return (count,) complex A_n e^(i d_n) of orders 1 .. count, in units of r w^2; real where ``offset`` is 0.
 
     ``ratio``: crank radius over length of the rod, r / l. ``offset``: of the cylinder from the shaft over the crank
     radius, e / r, positive towards where the throw is at phi = 90 degrees. Raises ModelError for a rod that does not

@@ -60,7 +60,7 @@ class Layout:
 
 
 def layout(name: str, banks: Sequence[float], throws: Sequence[float], z: Sequence[float] | None = None) -> Layout:
-    """An engine of N cylinders from lists in DEGREES: bank and throw of each, and its place along the shaft.
+    """Return an engine of N cylinders from lists in DEGREES: bank and throw of each, and its place along the shaft.
 
     ``z`` counts spacings; by default the cylinders stand one behind the other, and the middle is 0. Raises ModelError
     for lists of different lengths and what is no number.
@@ -98,12 +98,12 @@ INLINE_THROWS: dict[int, tuple[float, ...]] = {
 
 
 def inline(throws: Sequence[float]) -> Layout:
-    """Cylinders one behind the other, a throw each: ``inline((0, 180, 180, 0))``."""
+    """Return cylinders one behind the other, a throw each: ``inline((0, 180, 180, 0))``."""
     return layout(f"I{len(throws)}", [0.0] * len(throws), throws)
 
 
 def vee(angle: float, throws: Sequence[float], split: float = 0.0) -> Layout:
-    """Two banks ``angle`` apart with two rods side by side on each throw; cylinders 1, 3, 5 in the right-hand bank.
+    """Return two banks ``angle`` apart, two rods side by side on each throw; 1, 3, 5 in the right-hand bank.
 
     ``split``: how far the pin of the left-hand cylinder of a throw is ahead of that of the right-hand one;
     :func:`even_split` is the one with which the cylinders fire at equal intervals.
@@ -116,24 +116,24 @@ def vee(angle: float, throws: Sequence[float], split: float = 0.0) -> Layout:
 
 
 def even_split(angle: float, cylinders: int) -> float:
-    """The split with which the two cylinders of a throw fire one interval of a four-stroke engine apart."""
+    """Return the split with which the two cylinders of a throw fire one interval of a four-stroke engine apart."""
     return angle - 720.0 / cylinders
 
 
 def boxer(throws: Sequence[float]) -> Layout:
-    """Flat with a throw for each cylinder, sides taken in turns: opposite pistons move in and out together."""
+    """Return a boxer: flat, a throw for each cylinder; opposite pistons move in and out together."""
     banks = [-90.0 if k % 2 == 0 else 90.0 for k in range(len(throws))]
     return layout(f"flat-{len(throws)}", banks, throws)
 
 
 def staggered(angle: float, throws: Sequence[float]) -> Layout:
-    """Narrow V (VR) with a throw for each cylinder, sides taken in turns."""
+    """Return a narrow V (VR) with a throw for each cylinder, sides taken in turns."""
     banks = [-angle / 2 if k % 2 == 0 else angle / 2 for k in range(len(throws))]
     return layout(f"VR{len(throws)}-{angle:g}", banks, throws)
 
 
 def fan(banks: Sequence[float], throws: Sequence[float]) -> Layout:
-    """Several banks with a rod of each on every throw (W, or with one throw a radial engine)."""
+    """Return several banks with a rod of each on every throw (W, or with one throw a radial engine)."""
     if not banks:
         raise ModelError("engine: a fan needs at least one bank; give the angles of its banks in degrees")
     count = len(throws)
@@ -169,7 +169,7 @@ NAMES = (
 def named(
     name: str, angle: float | None = None, throws: Sequence[float] | None = None, split: float | None = None
 ) -> Layout:
-    """The layout of a name, with other angles where these are given.
+    """Return the layout of a name, with other angles where these are given.
 
     ``angle`` between the banks of V and VR; ``throws`` their directions, of a V engine one for two cylinders; ``split``
     of a V engine: how far the left-hand pin of a throw is ahead, 0 for one common pin. Raises ModelError for an unknown
@@ -219,10 +219,10 @@ SAME = 1e-6
 """Difference of two angles (rad) or places (spacings) that are the same."""
 
 
-def throws(of: Layout) -> list[list[int]]:
-    """Indices of the cylinders on each throw; pins that are split are throws of their own."""
+def cylinders_by_throw(plan: Layout) -> list[list[int]]:
+    """Return the indices of the cylinders on each throw; pins that are split are throws of their own."""
     by_throw: dict[tuple[int, int], list[int]] = {}
-    for k, cylinder in enumerate(of.cylinders):
+    for k, cylinder in enumerate(plan.cylinders):
         turned = round(math.remainder(cylinder.throw, 2 * math.pi) / SAME)
         by_throw.setdefault((turned, round(cylinder.z / SAME)), []).append(k)
     return list(by_throw.values())

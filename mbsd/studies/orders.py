@@ -27,7 +27,7 @@ from mbsd.studies.content import own_sources
 from mbsd.studies.points import REASON, Point
 from mbsd.studies.progress import VOICE
 from mbsd.studies.simulated import Simulated
-from mbsd.studies.work import Done, Order, Result
+from mbsd.studies.work import Chunk, Order, Result
 
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite", "cloudpickle")
 """Those whose version decides what comes out, beside mbsd's own sources and Python."""
@@ -109,16 +109,16 @@ def answer_of(order: Order, points: Numbered, sent: Mapping[str, bytes] | None =
     return answered(lambda chunk: work.chunk(order, chunk), points)
 
 
-def answered(done_of: Callable[[list[Point]], Done], points: Numbered) -> bytes:
-    """Return the report on these points. ``done_of`` computes them."""
+def answered(chunk_of: Callable[[list[Point]], Chunk], points: Numbered) -> bytes:
+    """Return the report on these points. ``chunk_of`` computes them."""
     try:
-        done = done_of([point for _, point in points])
+        chunk = chunk_of([point for _, point in points])
     except Exception as error:
         return encoded(Report(failed=(points[0][0], f"{type(error).__name__}: {error}"[:10_000])))
     numbers = [number for number, _ in points]
-    results = [_json([result.values, result.reason, result.passing]) for result in done.results]
-    note = _json(done.inputs.states())
-    return encoded(Report(done=list(zip(numbers, results, strict=True)), note=note, seconds=done.seconds))
+    results = [_json([result.values, result.reason, result.passing]) for result in chunk.results]
+    note = _json(chunk.inputs.states())
+    return encoded(Report(done=list(zip(numbers, results, strict=True)), note=note, seconds=chunk.seconds))
 
 
 def reader(points: Sequence[Point]) -> Callable[[int, bytes], Result]:

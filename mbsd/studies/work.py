@@ -42,7 +42,7 @@ class Result(NamedTuple):
     """Whether the machine failed, not the point."""
 
 
-class Done(NamedTuple):
+class Chunk(NamedTuple):
     """A chunk's results in order, the seconds it took, and all that its process has read for this study so far."""
 
     results: list[Result]
@@ -113,14 +113,14 @@ def _forget_modules() -> None:
             del sys.modules[name]
 
 
-def chunk(order: Order, points: Sequence[Point]) -> Done:
+def chunk(order: Order, points: Sequence[Point]) -> Chunk:
     """Build and measure every point, with functions from their bytes."""
     return chunk_of(*loaded(order), points)
 
 
 def chunk_of(
     build: Callable[..., Any], measure: Callable[[Any], Any], recorder: Recorder | None, points: Sequence[Point]
-) -> Done:
+) -> Chunk:
     """Build and measure every point. Warnings of the single points are not shown."""
     started = time.perf_counter()
     with warnings.catch_warnings(), recording(recorder) if recorder else nullcontext():
@@ -130,7 +130,7 @@ def chunk_of(
         else:
             results = [result_of(build, measure, point) for point in points]
     inputs = recorded_inputs(recorder) if recorder else Inputs()
-    return Done(results, time.perf_counter() - started, inputs)
+    return Chunk(results, time.perf_counter() - started, inputs)
 
 
 def _together(build: Callable[..., Any], measure: Simulated, points: Sequence[Point]) -> list[Result]:

@@ -111,7 +111,7 @@ def optimise(
     moves = Moves(m, bounds, build, objective, conditions, (duration, steps, times), simulate, tolerance)
     first = _first(m, bounds, moves, start)
     search = _Search(moves, bounds, conditions, sign, progress)
-    begun = search.at((first - bounds.low) / bounds.size)  # raises what it cannot do
+    begun = search.motion_at((first - bounds.low) / bounds.size)  # raises what it cannot do
     search.scale = max(abs(begun.value), float(np.abs(begun.slope * bounds.size).max(initial=0.0))) or 1.0
     message, ended = search.run(method, most, precision)
     return _optimum(search, message, ended)
@@ -151,7 +151,7 @@ class _Search:
         self.best: tuple[np.ndarray, Tried] | None = None
         self.history: list[float] = []
 
-    def at(self, u: np.ndarray) -> Tried:
+    def motion_at(self, u: np.ndarray) -> Tried:
         """Return the motion at u; if there is none, one that is worse the farther u is from the last valid one."""
         u = np.clip(u, 0.0, 1.0)
         key = u.tobytes()
@@ -203,23 +203,23 @@ class _Search:
         options: dict[str, Any] = {"maxiter": most}
         options |= {"ftol": precision} if method == "SLSQP" else {"xtol": precision, "gtol": precision}
         result = minimize(
-            lambda u: factor * self.at(u).value,
+            lambda u: factor * self.motion_at(u).value,
             self.good[0],
-            jac=lambda u: factor * self.at(u).slope * size,
+            jac=lambda u: factor * self.motion_at(u).slope * size,
             method=method,
             bounds=[(0.0, 1.0)] * len(size),
             constraints=self._slsqp() if method == "SLSQP" else self._trust(),
             options=options,
         )
-        self.at(result.x)
+        self.motion_at(result.x)
         return str(result.message), bool(result.success) or result.status in (1, 2)
 
     def _parts(self, k: int) -> tuple[float, Callable[[Any], float], Callable[[Any], np.ndarray]]:
         size = _size(self.conditions[k], self.good[1].conditions[k] if self.good else 1.0)
         return (
             size,
-            lambda u: self.at(u).conditions[k] / size,
-            lambda u: self.at(u).condition_slopes[k] * self.bounds.size / size,
+            lambda u: self.motion_at(u).conditions[k] / size,
+            lambda u: self.motion_at(u).condition_slopes[k] * self.bounds.size / size,
         )
 
     def _slsqp(self) -> list[dict[str, Any]]:

@@ -68,7 +68,7 @@ class Target:
         Where the points are a closed curve, differences of the paths from it follow, weighed so that both count alike.
         """
         if fine:
-            places = np.array([at(path, along, self.returns) for path, along in zip(paths, where, strict=True)])
+            places = np.array([places_at(path, along, self.returns) for path, along in zip(paths, where, strict=True)])
             away = places.reshape(len(paths), -1, 2) - self.points
         else:
             away = on_chords(paths, where) - self.points
@@ -85,7 +85,9 @@ class Target:
         if fine:
             h = 1e-4
             ends = [
-                np.array([at(path, along + step, self.returns) for path, along in zip(paths, where, strict=True)])
+                np.array(
+                    [places_at(path, along + step, self.returns) for path, along in zip(paths, where, strict=True)]
+                )
                 for step in (-h, h)
             ]
             line = (ends[1] - ends[0]).reshape(len(paths), -1, 2)
@@ -98,9 +100,9 @@ class Target:
         """Return (N, 2) the places of one path (T, 2) that stand for the points (m)."""
         if self.times is None:
             find = feet_in_order if self.ordered else feet
-            return at(path, find(path, self.points, self.returns), self.returns)
+            return places_at(path, find(path, self.points, self.returns), self.returns)
         where = self._samples(len(path), np.array([shift]))[0]
-        return at(path, where, self.returns)
+        return places_at(path, where, self.returns)
 
     def _ring(self) -> np.ndarray:
         """Return the points as a closed polygon of few corners, the first once more at its end."""
@@ -182,7 +184,7 @@ def on_chords(paths: np.ndarray, where: np.ndarray) -> np.ndarray:
     return (1 - part) * paths[rows, below] + part * paths[rows, below + 1]
 
 
-def at(path: np.ndarray, where: np.ndarray, closed: bool) -> np.ndarray:
+def places_at(path: np.ndarray, where: np.ndarray, closed: bool) -> np.ndarray:
     """Return (N, 2) places of a path (T, 2) at sample numbers ``where`` (N,), not whole."""
     middle, coefficients = _pieces(path, where, closed)
     return np.einsum("np,npc->nc", (where - middle)[:, None] ** np.arange(7), coefficients)

@@ -45,8 +45,8 @@ from mbsd.derivatives.solution_rows import along_of, rows_of
 from mbsd.dynamics.prepare.prepare import prepare_dynamics, started
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.repeated import Outputs, Repeated
+from mbsd.kinematics.pose.held_values import independent_rows
 from mbsd.kinematics.pose.initial import Initial
-from mbsd.kinematics.pose.mobility import independent_rows
 from mbsd.kinematics.pose.phases import take_decided
 from mbsd.model.mechanism import Model
 from mbsd.numbers.names import Number

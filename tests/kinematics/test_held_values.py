@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from mbsd import Mechanism
+from mbsd import Mechanism, constant_rate
 from mbsd.measures import final
 
 
@@ -63,3 +63,33 @@ def test_rows_of_a_batch_are_held_as_single_starts_are() -> None:
     for k, (x, y, _) in enumerate(places.tolist()):
         sol = railed(0.0, complex(x, y), slope=float(slopes[k])).simulate(0.1, steps=2)
         assert np.allclose([out["x"][k], out["y"][k]], [sol.body("block").x[-1], sol.body("block").y[-1]], atol=1e-7)
+
+
+@pytest.mark.filterwarnings("ignore:.*start.*")
+@pytest.mark.parametrize("turn", [0.9, -2.3])
+def test_a_start_that_is_far_from_closing_turns_with_the_world(turn: float) -> None:
+    def begun(turn: float) -> np.ndarray:
+        c, s = math.cos(turn), math.sin(turn)
+        m = Mechanism("apart", gravity=(0.0, 0.0))
+        first, second = (m.body(name, 1.0, (0.1, 0.2), 0.1) for name in ("first", "second"))
+        m.distance("tie", first.at(-0.12, -0.51), second.at(0.5, -0.18), length=0.7)
+        (a, b), (d, e) = (-0.22, -0.36), (1.17, -0.53)
+        m.start_near(
+            first=(c * a - s * b, s * a + c * b, math.degrees(turn) - 36.0),
+            second=(c * d - s * e, s * d + c * e, math.degrees(turn) + 28.0),
+        )
+        q = m.simulate(1e-6, steps=1).q[0, 1:]
+        return np.column_stack([q[:, :2] @ np.array([[c, -s], [s, c]]), q[:, 2] - turn])
+
+    assert np.abs(begun(turn) - begun(0.0)).max() < 1e-12
+
+
+def test_a_sweep_holds_the_angles_of_wheels_whose_places_the_joints_correct() -> None:
+    m = Mechanism("belted")
+    wheels = [m.body(name, 1.0, (0.03, 0.02), 0.01) for name in ("small", "large")]
+    for name, wheel, x in zip(("a", "b"), wheels, (0.0, 1.0), strict=True):
+        m.revolute(name, m.ground.at(x, 0.0), wheel.origin)
+    m.belt("belt", *(wheel.origin for wheel in wheels), radius_i=0.1, radius_j=0.2)
+    m.drive_angle("motor", wheels[0], constant_rate(1.0))
+    m.start_near(small=(0.0, 0.0, 0.0), large=(1.01, 0.02, 50.0))  # beside its shaft
+    assert abs(m.sweep(times=[0.0]).body("large").theta[0] - math.radians(50.0)) < 1e-12

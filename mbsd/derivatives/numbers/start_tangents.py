@@ -15,14 +15,9 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.equations.assembly import residual_and_jacobian
+from mbsd.kinematics.pose.close import given_coordinates, nearest_turn
 from mbsd.kinematics.pose.held_values import held_values, is_choice, places_of
-from mbsd.kinematics.pose.initial import (
-    drive_at,
-    given_coordinates,
-    given_velocities,
-    nearest_turn,
-    velocity_places,
-)
+from mbsd.kinematics.pose.initial import drive_at, given_velocities, velocity_places
 from mbsd.model.mechanism import Model
 
 CLOSE = 1e-9

@@ -23,10 +23,9 @@ from mbsd.base.users_function import described
 from mbsd.dynamics.batch.designs import Designs
 from mbsd.dynamics.batch.single_run import Base
 from mbsd.equations.assembly import tabulate
-from mbsd.kinematics.pose.close import CLOSED
-from mbsd.kinematics.pose.held_values import free_direction, half_held, places_of
-from mbsd.kinematics.pose.initial import consistent, given_coordinates, given_velocities
-from mbsd.kinematics.pose.mobility import RANK_TOLERANCE, independent_rows
+from mbsd.kinematics.pose.close import CLOSED, given_coordinates
+from mbsd.kinematics.pose.held_values import RANK_TOLERANCE, free_direction, half_held, independent_rows, places_of
+from mbsd.kinematics.pose.initial import consistent, given_velocities
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed

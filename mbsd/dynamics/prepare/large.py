@@ -30,9 +30,17 @@ from mbsd.dynamics.reference.arrays import Dynamics, scratch_for
 from mbsd.dynamics.reference.projection import factor_at, project
 from mbsd.dynamics.reference.schur import plan_schur
 from mbsd.dynamics.reference.sliding import sliding_for
-from mbsd.kinematics.pose.close import CLOSED, LONGEST_STEP, assemble, rough_pose, unwind_angles
+from mbsd.kinematics.pose.close import (
+    CLOSED,
+    LONGEST_STEP,
+    assemble,
+    given_coordinates,
+    nearest_turn,
+    rough_pose,
+    unwind_angles,
+)
 from mbsd.kinematics.pose.ideal_joints import closed_ideally
-from mbsd.kinematics.pose.initial import Initial, given_coordinates, given_velocities, nearest_turn, tell_coordinates
+from mbsd.kinematics.pose.initial import Initial, given_velocities, tell_coordinates
 from mbsd.kinematics.pose.mobility import joint_mobility
 from mbsd.kinematics.pose.open_loops import why_open
 from mbsd.kinematics.pose.phases import active_rows, let_phases_go, refuse_impossible, take_decided, take_phases

@@ -7,8 +7,8 @@ import numpy as np
 from mbsd.dynamics.prepare.large import MANY_COORDINATES
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.repeated_rows.arrays import BETTER, FOLLOWS, HELD, OPENED, ROW, SCALE, UNTIL, Repeated
+from mbsd.kinematics.pose.held_values import RANK_TOLERANCE
 from mbsd.kinematics.pose.mobility import BETTER as FACTOR
-from mbsd.kinematics.pose.mobility import RANK_TOLERANCE
 
 WORN = 1e3
 """As FACTOR where friction of joints comes from these rows' multipliers: other rows divide the load otherwise."""

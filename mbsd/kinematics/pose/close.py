@@ -17,6 +17,7 @@ from mbsd.arrays.packing import Packed
 from mbsd.base.errors import AssemblyError
 from mbsd.base.kept import Kept
 from mbsd.equations.assembly import residual_and_jacobian
+from mbsd.kinematics.pose.held_values import held_values, is_choice, places_of
 from mbsd.kinematics.pose.ideal_joints import closed_ideally
 from mbsd.kinematics.pose.open_loops import turned, why_open
 from mbsd.kinematics.pose.phases import let_phases_go, refuse_impossible, take_phases
@@ -79,7 +80,7 @@ def _nearest(m: Model, packed: Packed, drive: np.ndarray) -> _Nearest:
     for attempt in range(ATTEMPTS):
         q = rough_pose(m, packed, drive, attempt)
         unwind_angles(packed, q)
-        q, worst = close_with_phases(packed, q, drive)
+        q, worst = close_with_phases(m, packed, q, drive)
         if worst <= CLOSED:
             refuse_impossible(packed, q)
             return _Nearest(q, packed.system.angle_offset, True)
@@ -90,10 +91,12 @@ def _nearest(m: Model, packed: Packed, drive: np.ndarray) -> _Nearest:
     return _Nearest(best[1], packed.system.angle_offset, False)
 
 
-def close_with_phases(packed: Packed, q: np.ndarray, drive: np.ndarray) -> tuple[np.ndarray, float]:
-    """Close all rows that say where bodies are; the others mesh as they then stand."""
+def close_with_phases(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray) -> tuple[np.ndarray, float]:
+    """Close all rows that say where bodies are, with bodies turned as given; the others mesh as they then stand."""
     let_phases_go(packed)
     q, worst = close(packed, q, drive)
+    if worst <= CLOSED and packed.specials.phased:
+        q = close_holding(m, packed, q, drive)
     if worst <= CLOSED and take_phases(packed, q, drive):
         q, worst = close(packed, q, drive)
     return q, worst
@@ -120,7 +123,7 @@ def close(packed: Packed, q: np.ndarray, drive: np.ndarray, rows: int | None = N
         if not (np.isfinite(jac).all() and np.isfinite(phi).all()):
             return q, math.inf
         step = _least(jac, -phi)
-        longest = float(np.abs(step).max(initial=0.0))
+        longest = length_of_step(step)
         step *= min(1.0, LONGEST_STEP / longest) if longest > 0 else 1.0
         before, old = float(np.linalg.norm(phi)), q.copy()
         for _ in range(12):
@@ -132,6 +135,68 @@ def close(packed: Packed, q: np.ndarray, drive: np.ndarray, rows: int | None = N
         if longest < 1e-13 or not np.linalg.norm(phi) < before:
             break
     return q, float(np.abs(phi).max())
+
+
+def given_coordinates(m: Model, packed: Packed) -> list[tuple[int, float]]:
+    """Coordinates (index in (3 nb,), value) that start_near gives, in its order."""
+    given = []
+    number = {name: b for b, name in enumerate(packed.body_names)}
+    for name, start in m.starts.items():
+        b = number[name]
+        given.append((3 * b + 2, start.angle))
+        if start.place is not None:
+            c, s = math.cos(start.angle), math.sin(start.angle)
+            x, y = packed.com[b]
+            given += [(3 * b, start.place[0] + c * x - s * y), (3 * b + 1, start.place[1] + s * x + c * y)]
+    return given
+
+
+def nearest_turn(q: np.ndarray, c: int, value: float) -> float:
+    """``value`` of coordinate c, for an angle up to whole turns."""
+    return value + 2 * math.pi * round((q[c] - value) / (2 * math.pi)) if c % 3 == 2 else value
+
+
+def start_targets(m: Model, packed: Packed, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the coordinates that start_near gives, and their values (k,) with angles as near to q as turns allow."""
+    given = given_coordinates(m, packed)
+    return np.array([c for c, _ in given], np.int64), np.array([nearest_turn(q, c, value) for c, value in given])
+
+
+def close_holding(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray) -> np.ndarray:
+    """Return the pose (3 nb,) that closes and holds what start_near gives as far as the joints leave it free.
+
+    ``q``: a closed pose, which is returned where no such pose is near. Directions in which places are held may turn on
+    the way.
+    """
+    wanted, targets = start_targets(m, packed, q)
+    row_scale, column_scale = packed.row_scale(), packed.column_scale()
+    size = column_scale[wanted - 3]
+    if (np.abs(q[wanted] - targets) / size).max(initial=0.0) <= 1e-12:
+        return q
+    closed, units = q, np.eye(packed.coordinates)[wanted - 3]
+    q, held = q.copy(), np.zeros((0, len(wanted)))
+    for _ in range(50):
+        residual_and_jacobian(packed.system, q, drive, packed.ws)
+        rows = packed.jacobian() * row_scale[:, None] * column_scale
+        if not len(held) or not is_choice(held):
+            held = held_values(rows, units, places_of(wanted.tolist()))[1]
+        phi = np.concatenate([packed.ws.phi * row_scale, held @ ((q[wanted] - targets) / size)])
+        if np.abs(phi).max() <= 1e-13:
+            break
+        jac = np.vstack([rows, held @ units])
+        step = np.linalg.lstsq(jac, -phi, rcond=1e-10)[0]
+        longest = length_of_step(step)
+        if longest < 1e-15:
+            break
+        q[3:] += step * min(1.0, LONGEST_STEP / longest) * column_scale
+    residual_and_jacobian(packed.system, q, drive, packed.ws)
+    return q if np.abs(packed.ws.phi * row_scale).max(initial=0.0) <= CLOSED else closed
+
+
+def length_of_step(step: np.ndarray) -> float:
+    """Return how far ``step`` (n,) moves or turns a body, in sizes or rad; the world's axes do not matter."""
+    x, y, angle = step.reshape(-1, 3).T
+    return float(np.maximum(np.hypot(x, y), np.abs(angle)).max(initial=0.0))
 
 
 def _least(jac: np.ndarray, right: np.ndarray) -> np.ndarray:

@@ -9,12 +9,16 @@ world has does not matter. Velocities of a place go likewise.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
-from mbsd.kinematics.pose.mobility import independent_rows
-
+RANK_TOLERANCE = 1e-8
+"""A row that adds less than this part of itself to the others repeats them."""
+SMALL = 4000
+"""Up to so many numbers of J, its rank is kept for the next call with the same J."""
 ALIGNED = 1e-12
 """Part of u across an axis below which it is that axis."""
 
@@ -57,3 +61,32 @@ def free_direction(before: np.ndarray, pair: np.ndarray) -> np.ndarray:
 def places_of(coordinates: Sequence[int]) -> list[tuple[int, int]]:
     """Return the pairs x, y among given coordinates, numbers in (3 nb,)."""
     return [(k, k + 1) for k, c in enumerate(coordinates) if c % 3 == 0]
+
+
+def independent_rows(jac: np.ndarray) -> list[int]:
+    """Return the rows of ``jac`` (m, n) independent of those before them (Gram-Schmidt, twice for rounding)."""
+    if jac.size > SMALL:
+        return _independent(jac)
+    return list(_kept_independent(jac.tobytes(), jac.shape))
+
+
+@lru_cache(maxsize=64)
+def _kept_independent(numbers: bytes, shape: tuple[int, int]) -> tuple[int, ...]:
+    return tuple(_independent(np.frombuffer(numbers).reshape(shape).copy()))
+
+
+def _independent(jac: np.ndarray) -> list[int]:
+    basis = np.zeros((min(jac.shape), jac.shape[1]))
+    kept: list[int] = []
+    lengths = np.sqrt(np.einsum("rc,rc->r", jac, jac))
+    for row in np.flatnonzero(lengths > 0):
+        if len(kept) == len(basis):
+            break
+        rest, before = jac[row] / lengths[row], basis[: len(kept)]
+        for _ in range(2):
+            rest = rest - (before @ rest) @ before
+        length = math.sqrt(rest @ rest)
+        if length > RANK_TOLERANCE:
+            basis[len(kept)] = rest / length
+            kept.append(int(row))
+    return kept

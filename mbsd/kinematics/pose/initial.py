@@ -21,8 +21,8 @@ from mbsd.arrays.inertias import inertia_of, least_energy, usual_inertia
 from mbsd.arrays.packing import Packed
 from mbsd.base.kept import Kept
 from mbsd.equations.assembly import residual_and_jacobian
-from mbsd.kinematics.pose.close import CLOSED, LONGEST_STEP, assemble, close
-from mbsd.kinematics.pose.held_values import held_values, is_choice, places_of
+from mbsd.kinematics.pose.close import assemble, close, close_holding, start_targets
+from mbsd.kinematics.pose.held_values import held_values
 from mbsd.kinematics.pose.ideal_joints import closed_ideally
 from mbsd.kinematics.pose.phases import let_phases_go, refuse_impossible, take_phases
 from mbsd.model.mechanism import Model
@@ -110,16 +110,11 @@ def start_pose(m: Model, packed: Packed, time: float, drive: np.ndarray) -> tupl
 def _start_pose(m: Model, packed: Packed, time: float, drive: np.ndarray) -> tuple[np.ndarray, list[str]]:
     """The same of a mechanism whose joints are all there."""
     q = assemble(m, packed, time)
-    given = given_coordinates(m, packed)
-    if not given:
+    if not m.starts:
         return q, []
     let_phases_go(packed)
-    size = np.concatenate([np.ones(3), packed.column_scale()])
-    targets = np.array([nearest_turn(q, c, value) for c, value in given])
-    wanted = np.array([c for c, _ in given])
-    if (np.abs(q[wanted] - targets) / size[wanted]).max() > 1e-12:
-        residual_and_jacobian(packed.system, q, drive, packed.ws)
-        q = _close_holding(packed, q, drive, wanted, targets)
+    q = close_holding(m, packed, q, drive)
+    wanted, targets = start_targets(m, packed, q)
     if take_phases(packed, q, drive):
         q = close(packed, q, drive)[0]
     refuse_impossible(packed, q)
@@ -141,53 +136,6 @@ def tell_coordinates(packed: Packed, q: np.ndarray, given: list[tuple[int, float
             else:
                 deviations.append(f"the {what} of the centre of mass of '{body}' is {q[c]:.6g} m, not {target:.6g}")
     return deviations
-
-
-def given_coordinates(m: Model, packed: Packed) -> list[tuple[int, float]]:
-    """Coordinates (index in (3 nb,), value) that start_near gives, in its order."""
-    given = []
-    number = {name: b for b, name in enumerate(packed.body_names)}
-    for name, start in m.starts.items():
-        b = number[name]
-        given.append((3 * b + 2, start.angle))
-        if start.place is not None:
-            c, s = math.cos(start.angle), math.sin(start.angle)
-            x, y = packed.com[b]
-            given += [(3 * b, start.place[0] + c * x - s * y), (3 * b + 1, start.place[1] + s * x + c * y)]
-    return given
-
-
-def nearest_turn(q: np.ndarray, c: int, value: float) -> float:
-    """``value`` of coordinate c, for an angle up to whole turns."""
-    return value + 2 * math.pi * round((q[c] - value) / (2 * math.pi)) if c % 3 == 2 else value
-
-
-def _close_holding(
-    packed: Packed, q: np.ndarray, drive: np.ndarray, wanted: np.ndarray, targets: np.ndarray
-) -> np.ndarray:
-    """The closed pose with coordinates ``wanted`` at ``targets`` as far as they can be; the given pose if none is near.
-
-    Directions in which places are held may turn on the way.
-    """
-    closed, row_scale, column_scale = q, packed.row_scale(), packed.column_scale()
-    size, units = column_scale[wanted - 3], np.eye(packed.coordinates)[wanted - 3]
-    q, held = q.copy(), np.zeros((0, len(wanted)))
-    for _ in range(50):
-        residual_and_jacobian(packed.system, q, drive, packed.ws)
-        rows = packed.jacobian() * row_scale[:, None] * column_scale
-        if not len(held) or not is_choice(held):
-            held = held_values(rows, units, places_of(wanted.tolist()))[1]
-        phi = np.concatenate([packed.ws.phi * row_scale, held @ ((q[wanted] - targets) / size)])
-        if np.abs(phi).max() <= 1e-13:
-            break
-        jac = np.vstack([rows, held @ units])
-        step = np.linalg.lstsq(jac, -phi, rcond=1e-10)[0]
-        longest = float(np.abs(step).max(initial=0.0))
-        if longest < 1e-15:
-            break
-        q[3:] += step * min(1.0, LONGEST_STEP / longest) * column_scale
-    residual_and_jacobian(packed.system, q, drive, packed.ws)
-    return q if np.abs(packed.ws.phi * row_scale).max(initial=0.0) <= CLOSED else closed
 
 
 def _velocities(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray) -> tuple[np.ndarray, list[str]]:

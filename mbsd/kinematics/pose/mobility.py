@@ -9,7 +9,6 @@ and the largest counts.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from functools import lru_cache
 
@@ -21,14 +20,11 @@ from mbsd.base.kept import Kept
 from mbsd.base.quantity import counted
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.close import CLOSED, close, rough_pose
+from mbsd.kinematics.pose.held_values import RANK_TOLERANCE, SMALL, independent_rows
 from mbsd.kinematics.pose.phases import let_phases_go, take_phases
 from mbsd.model.mechanism import Model
 from mbsd.results.mobility import Mobility
 
-RANK_TOLERANCE = 1e-8
-"""A row that adds less than this part of itself to the others repeats them."""
-SMALL = 4000
-"""Up to so many numbers of J, its rank is kept for the next call with the same J."""
 BETTER = 4.0
 """Rows are exchanged for others whose least singular value is this many times larger."""
 
@@ -210,35 +206,6 @@ def scaled_jacobian(packed: Packed, q: np.ndarray) -> np.ndarray:
     """(m, n) dimensionless Jacobian at q, ground's columns left out."""
     residual_and_jacobian(packed.system, q, np.zeros((len(packed.motions) + 1, 3)), packed.ws)
     return packed.jacobian() * packed.row_scale()[:, None] * packed.column_scale()
-
-
-def independent_rows(jac: np.ndarray) -> list[int]:
-    """Rows that are independent of those before them (Gram-Schmidt, done twice for rounding)."""
-    if jac.size > SMALL:
-        return _independent(jac)
-    return list(_kept_independent(jac.tobytes(), jac.shape))
-
-
-@lru_cache(maxsize=64)
-def _kept_independent(numbers: bytes, shape: tuple[int, int]) -> tuple[int, ...]:
-    return tuple(_independent(np.frombuffer(numbers).reshape(shape).copy()))
-
-
-def _independent(jac: np.ndarray) -> list[int]:
-    basis = np.zeros((min(jac.shape), jac.shape[1]))
-    kept: list[int] = []
-    lengths = np.sqrt(np.einsum("rc,rc->r", jac, jac))
-    for row in np.flatnonzero(lengths > 0):
-        if len(kept) == len(basis):
-            break
-        rest, before = jac[row] / lengths[row], basis[: len(kept)]
-        for _ in range(2):
-            rest = rest - (before @ rest) @ before
-        length = math.sqrt(rest @ rest)
-        if length > RANK_TOLERANCE:
-            basis[len(kept)] = rest / length
-            kept.append(int(row))
-    return kept
 
 
 def _nearby(packed: Packed, q: np.ndarray, tries: int = 3, seed: int = 1) -> list[np.ndarray]:

@@ -58,7 +58,7 @@ def twin(m: Model) -> Twin | None:
         angle[flipped] = rough[2::3][flipped] - away[flipped]
         guess = placed_pose(m, packed, angle)
         unwind_angles(packed, guess)
-        other, worst = close_with_phases(packed, guess, drive)
+        other, worst = close_with_phases(m, packed, guess, drive)
         if worst > CLOSED or _distance(m, packed, other, rough) > AS_NEAR * own:
             continue
         apart = np.abs(_turns(other, q))

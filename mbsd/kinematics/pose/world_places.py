@@ -158,7 +158,7 @@ def _known_frame(m: Model, name: str) -> np.ndarray:
 def _free(m: Model, packed: Packed, q: np.ndarray, b: int) -> list[str]:
     """Return what neither joints and drivers nor start_near tell of body b in the pose q (3 nb,)."""
     from mbsd.equations.assembly import residual_and_jacobian
-    from mbsd.kinematics.pose.initial import given_coordinates
+    from mbsd.kinematics.pose.close import given_coordinates
 
     residual_and_jacobian(packed.system, q, packed.drives(np.zeros(1))[0], packed.ws)
     rows = packed.jacobian() * packed.row_scale()[:, None] * packed.column_scale()

@@ -13,7 +13,7 @@ motion is nudged.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +22,7 @@ from mbsd import Mechanism
 from mbsd.arrays.curve_branches import CurveBranches
 from mbsd.base.errors import MechanismError
 from mbsd.model.laws.function import Function
+from mbsd.model.mechanism import Start, StartVelocity
 from mbsd.numbers.names import known_numbers, number_named, with_values
 from mbsd.results.solution import Solution
 from tools.hunt.judging.agreement import NUDGE, SLACK
@@ -69,8 +70,8 @@ class Moved:
         return whole if self.names is None else self.names.get(whole, whole)
 
 
-def moved(m: Mechanism, rng: np.random.Generator, pose: Pose) -> Moved:
-    """The machine in other words of several sorts, each as often as not."""
+def moved(m: Mechanism, rng: np.random.Generator, pose: Pose, may_reorder: bool = True) -> Moved:
+    """Return the machine in other words of several sorts, each as often as not."""
     c, s = np.cos(-pose[2]), np.sin(-pose[2])
     out = Moved(seen_from(m, {"ground": pose}), np.array([[c, -s], [s, c]]), np.eye(2))
     flip, units, order, names = rng.random(4) < 0.5
@@ -82,7 +83,7 @@ def moved(m: Mechanism, rng: np.random.Generator, pose: Pose) -> Moved:
     scaled = in_units(out.m, float(length), float(mass)) if units else None
     if scaled is not None:
         out.m, out.length, out.mass = scaled, float(length), float(mass)
-    if order:
+    if order and may_reorder:
         out.m = shuffled(out.m, rng)
     other = renamed(out.m) if names else None
     if other is not None:
@@ -181,7 +182,12 @@ def beside_its_own(
         return Outcome(name, UNCLEAR, "no joint has a place of its own")
     if not _can_be_elsewhere(m, asked, first.packed.size, is_free):
         return Outcome(name, UNCLEAR, "a place is where another thing has it, as the centre of a gear")
-    times, words = np.linspace(first.t[0], first.t[-1], OUTPUTS + 1), moved(m, rng, pose)
+    free = first.mobility.dof - len(m.drivers)
+    if is_free and _given(m.starts) < free:
+        return Outcome(name, UNCLEAR, "less is given than decides the start: it is the nearest to zero, here and there")
+    # Of starts that contradict each other once a number changes, those given first hold.
+    may_reorder = max(_given(m.starts), _given(m.velocities)) <= free or not is_free
+    times, words = np.linspace(first.t[0], first.t[-1], OUTPUTS + 1), moved(m, rng, pose, may_reorder)
     same = Moved(m, np.eye(2), np.eye(2))
 
     def slopes(words: Moved, m: Mechanism) -> tuple[np.ndarray | None, MechanismError | None]:
@@ -202,6 +208,11 @@ def beside_its_own(
     if is_free and nearby is None:
         return Outcome(name, UNCLEAR, "a nudged motion has no derivatives")
     return _judged(name, asked, times, (own, other, nearby), asked.kinds(first), margin)
+
+
+def _given(starts: Mapping[str, Start] | Mapping[str, StartVelocity]) -> int:
+    """Return how many coordinates ``starts`` give."""
+    return sum(1 if start.place is None else 3 for start in starts.values())
 
 
 def _can_be_elsewhere(m: Mechanism, asked: Asked, size: float, is_free: bool) -> bool:

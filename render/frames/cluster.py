@@ -71,7 +71,7 @@ class _Kept:
             self.blender = None
 
     def stop_if_idle(self) -> None:
-        """Called a while after each picture."""
+        """Stop if nothing was asked for a while; called a while after each picture."""
         if self.busy.acquire(blocking=False):
             try:
                 if time.monotonic() - self.used >= IDLE:

@@ -94,7 +94,7 @@ RESERVE = 200e6
 
 
 def run(name: str, preset: Preset, show: str = "") -> None:
-    """The stage: every frame of the film in the store, and frames.json."""
+    """Make every frame of the film in the store, and frames.json."""
     started = time.perf_counter()
     out = Out(name)
     store = FrameStore(out.frames(preset.name), (preset.width, preset.height))
@@ -284,7 +284,7 @@ def _forecast(preset: Preset, store: FrameStore) -> tuple[float, str] | None:
 
 
 def _refuse_full_disk(name: str, preset: Preset, store: FrameStore, count: int) -> None:
-    """A PNG of the studio takes about 1.3 bytes a pixel; three at worst."""
+    """Raise UserError for a full disk: a PNG of the studio takes about 1.3 bytes a pixel, three at worst."""
     needed = 3.0 * preset.width * preset.height * count + RESERVE
     free = shutil.disk_usage(store.folder).free
     if free < needed:

@@ -84,7 +84,7 @@ def carriers() -> Path:
 
 
 def sources_key() -> str:
-    """SHA-256 over names and contents of the page's sources and its lock."""
+    """Return the SHA-256 over names and contents of the page's sources and its lock."""
     digest = hashlib.sha256()
     for path in sorted([*(PAGE / "src").rglob("*"), *(PAGE / name for name in LOCKED)]):
         if path.is_file():

@@ -97,3 +97,15 @@ def test_what_has_no_response_is_refused() -> None:
             mount_response(driven, [10.0], orders)
     with pytest.raises(ModelError, match="motor_on of the block is 'floor'; it is 'block' or 'ground'"):
         Block(1.0, 1.0, (Mount((0.0, 0.0), (1.0, 1.0)),), motor_on="floor")
+
+
+def test_bad_blocks_are_refused() -> None:
+    with pytest.raises(ModelError, match="mass of the block is 0 kg"):
+        Block(0.0, 1.0, mounts_of_frequency(1.0, 1.0, PLACES))
+    with pytest.raises(ModelError, match="needs a list of Mount"):
+        Block(1.0, 1.0, ())
+    with pytest.raises(ModelError, match="stiffness of the mount"):
+        Mount((0.0, 0.0), (-1.0, 0.0))
+    with pytest.raises(ModelError, match="frequency of the mounts is -8"):
+        mounts_of_frequency(1.0, -8.0, PLACES)
+    assert np.isfinite(mounts_of_frequency(1.0, 8.0, PLACES)[0].stiffness[0])

@@ -1,4 +1,4 @@
-"""The exploded view as a picture: made once, with names over it, and refused where nothing can be taken apart."""
+"""The exploded view: how a machine comes apart, and its picture with names."""
 
 from __future__ import annotations
 
@@ -10,9 +10,11 @@ import pytest
 
 from render.film import pieces
 from render.film.inputs import read_film
+from render.film.pieces import MOST, STEP, exploded
 from render.frames.story import apart
 from render.glb.exploded import exploded_glb, run
 from render.presets import Preset
+from shared.contract import read_parts
 from shared.contract.shot import Shot
 from shared.stage.errors import UserError
 from tools.fixtures import film_fixture
@@ -89,3 +91,25 @@ def test_a_machine_of_one_layer_is_refused(out_root: Path, monkeypatch: pytest.M
     )
     with pytest.raises(UserError, match="all its parts lie in one layer"):
         apart.run("four_bar", TINY)
+
+
+def test_layers_come_apart_in_the_order_of_their_middles(out_root) -> None:
+    parts = read_parts(film_fixture.write().parts)
+    lifts = exploded(parts, 0.2)
+    assert len(lifts) == sum(len(body.pieces) for body in parts.bodies.values())
+    middle = {lift.name: sum(parts.bodies[lift.body].pieces[lift.piece].z_range) / 2 for lift in lifts}
+    assert [middle[lift.name] for lift in lifts] == sorted(middle.values())
+    order = {lift.name: lift.order for lift in lifts}
+    assert order["ground/base"] == 0
+    assert order["crank/crank"] == order["rocker/rocker"] < order["crank/start"] < order["coupler/coupler"]
+    distances = [lift.distance for lift in lifts]
+    assert distances == [0.2 * STEP * lift.order for lift in lifts]
+    assert max(distances) <= 0.2 * MOST
+    assert {lift.axis for lift in lifts} == {(0.0, 0.0, 1.0)}
+
+
+def test_no_pieces_come_apart_nowhere(out_root) -> None:
+    parts = read_parts(film_fixture.write().parts)
+    for body in parts.bodies.values():
+        body.pieces.clear()
+    assert exploded(parts, 0.2) == []

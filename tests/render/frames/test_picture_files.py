@@ -1,4 +1,4 @@
-"""Pictures from workers: whole, of the size that was ordered, under the name that they have; nothing else is kept."""
+"""Files of pictures: whole, of the size that was ordered, plain, under their own names."""
 
 from __future__ import annotations
 
@@ -10,11 +10,15 @@ from types import SimpleNamespace
 from typing import Any
 
 import msgspec
+import numpy as np
 import pytest
-from PIL import Image
+from hypothesis import given
+from hypothesis import strategies as st
+from PIL import Image, PngImagePlugin
 
 from mbsd.dealing.report import WrongAnswer
-from render.blender.picture_file import SIGNATURE, fault_of, most_bytes, name_of, without_notes
+from render.blender.picture_file import SIGNATURE, fault_of, make_plain, most_bytes, name_of, without_notes
+from render.blender.worker.picture import save_whole
 from render.frames import cluster
 from render.frames.cluster import Made
 from render.frames.store import FrameStore
@@ -124,3 +128,83 @@ def test_rubbish_that_is_in_the_folder_already_is_missed(kind: str, tmp_path: Pa
     assert not (tmp_path / name).exists()
     with pytest.raises(UserError, match="came damaged"):
         FrameStore(tmp_path, size).keep(name, content)
+
+
+def picture(words: str, seed: int = 0) -> bytes:
+    notes = PngImagePlugin.PngInfo()
+    notes.add_text("Date", words)
+    notes.add_text("RenderTime", words, zip=True)
+    notes.add(b"gAMA", (45455).to_bytes(4))
+    pixels = np.random.default_rng(seed).integers(0, 256, (7, 5, 3), dtype=np.uint8)
+    buffer = io.BytesIO()
+    Image.fromarray(pixels).save(buffer, format="PNG", pnginfo=notes, exif=b"Exif\0\0" + words.encode(), dpi=(72, 72))
+    return buffer.getvalue()
+
+
+def test_notes_go_and_the_picture_stays() -> None:
+    content = picture("2026/11/22")
+    plain = without_notes(content)
+    assert not [word for word in (b"2026", b"Date", b"pHYs", b"eXIf") if word in plain]
+    assert b"gAMA" in plain
+    assert plain.endswith(b"IEND\xaeB`\x82")
+    with Image.open(io.BytesIO(content)) as before, Image.open(io.BytesIO(plain)) as after:
+        assert np.array_equal(np.asarray(before), np.asarray(after))
+    assert without_notes(picture("10:00")) == plain
+    assert without_notes(picture("10:00", seed=1)) != plain
+    assert without_notes(plain) == plain
+
+
+@given(st.data())
+def test_a_cut_file_is_left_alone(data: st.DataObject) -> None:
+    content = picture("now")
+    cut = content[: data.draw(st.integers(0, len(content) - 1))]
+    assert without_notes(cut) == cut or cut.endswith(b"IEND\xaeB`\x82") or _on_a_border(cut)
+    assert without_notes(b"GIF89a" + cut) == b"GIF89a" + cut
+
+
+def _on_a_border(cut: bytes) -> bool:
+    """Whether the cut is between two chunks: what is left has no end, which the check of a picture finds."""
+    place = 8
+    while place < len(cut):
+        place += 12 + int.from_bytes(cut[place : place + 4])
+    return place == len(cut) and not without_notes(cut).endswith(b"IEND\xaeB`\x82")
+
+
+def test_a_file_is_written_anew_only_where_something_goes(tmp_path: Path) -> None:
+    path = tmp_path / "a.png"
+    path.write_bytes(picture("x"))
+    make_plain(path)
+    before = path.stat().st_mtime_ns, path.read_bytes()
+    make_plain(path)
+    assert (path.stat().st_mtime_ns, path.read_bytes()) == before
+
+
+def whole(path: Path) -> str | None:
+    """The check of a file that must hold ``whole``."""
+    return None if path.exists() and path.read_bytes() == b"whole" else "is cut short"
+
+
+def test_an_error_of_blender_is_tried_again_and_then_told(tmp_path: Path) -> None:
+    part, calls = tmp_path / "part", []
+
+    def fails(path: Path) -> None:
+        calls.append(path)
+        raise RuntimeError("Error: No space left on device\n")
+
+    with pytest.raises(UserError, match=r"the file that Blender saved was not written \(Error: No space left"):
+        save_whole(part, fails, whole, 1000, "scene.blend")
+    assert len(calls) == 2
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_second_attempt_may_succeed(tmp_path: Path) -> None:
+    part, calls = tmp_path / "part", []
+
+    def at_last(path: Path) -> None:
+        calls.append(path)
+        if len(calls) == 1:
+            raise RuntimeError("Error: device busy")
+        path.write_bytes(b"whole")
+
+    save_whole(part, at_last, whole, 1000, "scene.blend")
+    assert part.read_bytes() == b"whole"

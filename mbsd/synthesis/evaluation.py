@@ -12,6 +12,7 @@ import numpy as np
 from mbsd.base.arguments import finite_number, switch
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
+from mbsd.base.quantity import counted
 from mbsd.derivatives.driven.sweeps import SweepTangents
 from mbsd.derivatives.refused import refuse_unfit
 from mbsd.derivatives.sensitivities import Tangents, moves_freely, simulation_tangents, values_and_slopes
@@ -83,8 +84,8 @@ class Moves:
         for label, value in values.items():
             if value.size != 1:
                 raise ModelError(
-                    f"{self.m.name}: optimise: {label} gives {value.size} numbers; it must give one: take a measure, "
-                    "such as largest(...), of it"
+                    f"{self.m.name}: optimise: {label} gives {counted(value.size, 'number')}; it must give one: "
+                    "take a measure of it, such as largest(...)"
                 )
         out = []
         for label, known in own.items():
@@ -93,7 +94,7 @@ class Moves:
                 continue
             slope = slopes[label].reshape(-1)
             if not (np.isfinite(slope).all() and np.isfinite(values[label]).all()):
-                raise ModelError(f"{self.m.name}: optimise: {label} is no number in this motion, or has no derivative")
+                raise ModelError(f"{self.m.name}: optimise: {label} is not finite in this motion, or has no derivative")
             out.append((float(values[label].reshape(())), slope))
         (value, slope), *rest = out
         return Tried(value, slope, [v for v, _ in rest], [s for _, s in rest], tangents.solve, model)

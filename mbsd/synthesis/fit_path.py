@@ -12,6 +12,7 @@ import numpy as np
 from mbsd.base.arguments import checked, finite_number, number_array, switch, whole_number
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import Suggesting, no_such, shown
+from mbsd.base.quantity import counted
 from mbsd.base.users_function import users_progress
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model, Start, new_name, own_body
@@ -256,7 +257,10 @@ def _told(owner: str, name: str, function: Callable[[Any, float], object] | None
 
 def _nothing(m: Model, search: Search, limit: float, grashof: bool) -> str:
     asked = [f"a transmission angle of {limit:g} rad"] * bool(limit) + ["Grashof's condition"] * bool(grashof)
-    tried = f"{m.name}: fit_path: of {search.designs.evaluations} designs within the bounds "
+    tried = f"{m.name}: fit_path: of {counted(search.designs.evaluations, 'design')} within the bounds "
     if not search.closed:
         return f"{tried}none closes over the whole motion; widen vary, or drive a link that can turn so far"
-    return f"{tried}{search.closed} close, and none of them meets {' and '.join(asked)}; ask for less, or widen vary"
+    closed = (
+        "1 closes, and it does not meet" if search.closed == 1 else f"{search.closed} close, and none of them meets"
+    )
+    return f"{tried}{closed} {' and '.join(asked)}; ask for less, or widen vary"

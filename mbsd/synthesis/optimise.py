@@ -16,6 +16,7 @@ import numpy as np
 from mbsd.base.arguments import checked, finite_number, positive_number, switch, whole_number
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import Suggesting, no_such, shown
+from mbsd.base.quantity import counted
 from mbsd.base.users_function import users_progress
 from mbsd.model.mechanism import Model
 from mbsd.synthesis.evaluation import Bounds, Condition, Moves, Tried, bounds_of, conditions_of
@@ -56,9 +57,8 @@ class Optimum(Suggesting):
     def __repr__(self) -> str:
         numbers = ", ".join(f"{name} {value:.6g}" for name, value in self.values.items())
         ended = "" if self.met else f"; not met: {self.message}"
-        return (
-            f"<Optimum of {self.mechanism.name}: {self.objective:.6g} at {numbers}; {self.evaluations} motions{ended}>"
-        )
+        motions = counted(self.evaluations, "motion")
+        return f"<Optimum of {self.mechanism.name}: {self.objective:.6g} at {numbers}; {motions}{ended}>"
 
 
 @checked

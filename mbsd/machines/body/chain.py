@@ -22,6 +22,7 @@ from dataclasses import dataclass
 
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
+from mbsd.base.quantity import counted
 from mbsd.machines.body.figure import Figure, MassProperties, combined
 from mbsd.mechanism import Mechanism
 from mbsd.model.body import Body
@@ -93,7 +94,9 @@ def not_below(mechanism: str, name: str, value: float, least: float, unit: str) 
 def ends_given(mechanism: str, name: str, ends: tuple[float, float], least: float, most: float) -> tuple[float, float]:
     """Return two angles given in DEGREES, as radians. Raises ModelError beyond ``least`` .. ``most``."""
     if len(ends) != 2:
-        raise ModelError(f"{mechanism}: {name} has {len(ends)} values; give degrees at the bottom and at the top")
+        raise ModelError(
+            f"{mechanism}: {name} has {counted(len(ends), 'value')}; give degrees at the bottom and at the top"
+        )
     for place, degrees in zip(("bottom", "top"), ends, strict=True):
         number = finite_number(f"{mechanism}: {name} at the {place}", degrees)
         if not least <= number <= most:

@@ -91,8 +91,8 @@ class Figure:
         """
         if not 0.0 < ankle < math.pi:
             raise ModelError(
-                f"figure: an ankle of {math.degrees(ankle):.4g} degrees is none; the angle between shank and sole is "
-                "between 0 and 180 degrees, and 90 where one stands"
+                f"figure: the ankle is {math.degrees(ankle):.4g} degrees; the angle between shank and sole must be "
+                "between 0 and 180, and is 90 in standing"
             )
         shank = self.length("shank")
         ball = complex(BALL * self.length("foot"), -self.length("ankle"))

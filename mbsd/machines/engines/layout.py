@@ -25,6 +25,7 @@ import numpy as np
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
+from mbsd.base.quantity import counted
 
 
 @dataclass(frozen=True)
@@ -69,8 +70,8 @@ def layout(name: str, banks: Sequence[float], throws: Sequence[float], z: Sequen
     places = [k - (count - 1) / 2 for k in range(count)] if z is None else z
     if not count or len(throws) != count or len(places) != count:
         raise ModelError(
-            f"engine '{name}': {count} banks, {len(throws)} throws and {len(places)} places along the shaft; "
-            "there must be one of each for each cylinder"
+            f"engine '{name}': {counted(count, 'bank')}, {counted(len(throws), 'throw')} and "
+            f"{counted(len(places), 'place')} along the shaft; give one of each for each cylinder"
         )
     cylinders = []
     for k, (bank, throw, place) in enumerate(zip(banks, throws, places, strict=True), start=1):
@@ -191,7 +192,7 @@ def named(
     }[family]()
     if throws is not None and len(throws) != len(usual):
         raise ModelError(
-            f"engine '{name}': {len(throws)} throws; it has {len(usual)}, "
+            f"engine '{name}': {counted(len(throws), 'throw')}; it has {len(usual)}, "
             + ("one for two cylinders" if family == "V" else "one for each cylinder" if len(usual) == number else "")
             + f", as {tuple(usual)}"
         )

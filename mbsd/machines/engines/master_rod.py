@@ -24,6 +24,7 @@ import numpy as np
 
 from mbsd.base.arguments import finite_number, not_negative_number, positive_number
 from mbsd.base.errors import ModelError
+from mbsd.base.quantity import counted
 from mbsd.machines.engines.layout import SAME, Layout, cylinders_by_throw
 from mbsd.model.cylinders.articulated_motion import ArticulatedMotion
 
@@ -137,8 +138,8 @@ def _of_throw(
     else:
         if len(own.angles) != len(others):
             raise ModelError(
-                f"engine '{name}': {len(own.angles)} angles of knuckle pins; a master rod here carries {len(others)} "
-                "other rods, so give as many"
+                f"engine '{name}': {counted(len(own.angles), 'angle')} for knuckle pins; a master rod here carries "
+                f"{counted(len(others), 'other rod')}, so give as many"
             )
         what = f"engine '{name}': angle of the knuckle pin of cylinder"
         angles = [math.radians(finite_number(f"{what} {k + 1}", a)) for k, a in zip(others, own.angles, strict=True)]

@@ -92,9 +92,7 @@ def study(
     content = Content(folder is not None, places.root).add(build).add(measure)
     store = None if folder is None else _store(folder, content, places)
     keys = [_key_of(point) for point in points] if store else []
-    results: dict[int, Result] = (
-        {} if store is None else {n: store.known[k] for n, k in enumerate(keys) if k in store.known}
-    )
+    results: dict[int, Result] = {n: store.known[k] for n, k in enumerate(keys) if k in store.known} if store else {}
     todo = {number: point for number, point in enumerate(points) if number not in results}
     if todo and isinstance(measure, Simulated):
         _refuse_measure(build, measure, todo.values())

@@ -133,16 +133,9 @@ def fit_path(
     limit = finite_number(f"{m.name}: fit_path: least_transmission (rad)", least_transmission)
     if not 0 <= limit < np.pi / 2:
         raise ModelError(f"{m.name}: fit_path: least_transmission is {limit:g} rad; it must be from 0 to below pi/2")
-    coarse = np.linspace(fine[0], fine[-1], min(COARSE, len(fine) - 1) + 1)
-    grids = {True: fine, False: coarse}
+    grids = {True: fine, False: np.linspace(fine[0], fine[-1], min(COARSE, len(fine) - 1) + 1)}
     designs = Designs(m, given, build, trace, grids, switch(f"{m.name}: fit_path: grashof", grashof))
-    target = Target(
-        target_points, _times(m, times, len(target_points)), switch(f"{m.name}: fit_path: closed", closed),
-        _returns(m, fine), (float(fine[0]), float(fine[-1])),
-        switch(f"{m.name}: fit_path: ordered", ordered),
-    )  # fmt: skip
-    if target.ordered and target.times is not None:
-        raise ModelError(f"{m.name}: fit_path: with times the order of the points is theirs; leave out ordered=True")
+    target = _target(m, target_points, times, closed, ordered, fine)
     shifts = switch(f"{m.name}: fit_path: free_start", free_start)
     if shifts and target.times is None:
         raise ModelError(f"{m.name}: fit_path: free_start adds a time to those that are given; give times=, too")
@@ -200,6 +193,17 @@ def _points(m: Model, points: object) -> np.ndarray:
     if not np.ptp(places, axis=0).any():
         raise ModelError(f"{m.name}: fit_path: all points are the same place; a path needs some that differ")
     return places
+
+
+def _target(m: Model, points: np.ndarray, times: object, closed: bool, ordered: bool, fine: np.ndarray) -> Target:
+    """Return the target of points (N, 2) for a motion at times ``fine`` (T,) (s). Raises ModelError."""
+    target = Target(
+        points, _times(m, times, len(points)), switch(f"{m.name}: fit_path: closed", closed),
+        _returns(m, fine), (float(fine[0]), float(fine[-1])), switch(f"{m.name}: fit_path: ordered", ordered),
+    )  # fmt: skip
+    if target.ordered and target.times is not None:
+        raise ModelError(f"{m.name}: fit_path: with times the order of the points is theirs; leave out ordered=True")
+    return target
 
 
 def _times(m: Model, times: object, count: int) -> np.ndarray | None:

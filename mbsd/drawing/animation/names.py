@@ -30,7 +30,7 @@ class Placed:
     number: int
     """Among the labels that the machine asks for, which come in the same order each time."""
     word: np.ndarray
-    """See sprites.py."""
+    """The word as a small picture, see :func:`sprite`."""
     off: np.ndarray
     """(2,) pixels from its anchor to its middle."""
 

@@ -1,6 +1,6 @@
 """The standard symbols of joints and drivers: pin circle, slider block on its guide, slot, weld, rod, arrows.
 
-Those of machines are in wheels.py, rolling.py, cam.py and geneva.py.
+Those of gears and belts are in wheels.py, of cams, Genevas and what rolls in higher_pairs.py.
 
 A kind that has no symbol of its own here gets a dashed line between its markers, so nothing is left out.
 """

@@ -28,7 +28,7 @@ from mbsd.base.errors import (
 if TYPE_CHECKING:
     from mbsd.analyses.efforts import ActuatedMotion
     from mbsd.analyses.equilibrium import Equilibrium
-    from mbsd.analyses.finding import Finding
+    from mbsd.analyses.findings import Finding
     from mbsd.analyses.modes import Mode
     from mbsd.analyses.state_space import Linearisation
     from mbsd.balancing.balance import Balance, balance
@@ -39,20 +39,16 @@ if TYPE_CHECKING:
     from mbsd.kinematics.batch import Batch
     from mbsd.mechanism import STANDARD_GRAVITY, Body, Force, Joint, Marker, Mechanism
     from mbsd.model.cylinders.cycle import GasCycle
-    from mbsd.model.cylinders.four_stroke import four_stroke
-    from mbsd.model.cylinders.pressure_table import pressure_table
-    from mbsd.model.cylinders.two_stroke import two_stroke
+    from mbsd.model.cylinders.engine_cycles import four_stroke, pressure_table, two_stroke
     from mbsd.model.event import Event, Happening, angle_reaches, distance_reaches, speed_reaches
     from mbsd.model.laws import Motion, constant_rate, cycloidal, function, harmonic, polynomial, recorded, table
     from mbsd.model.laws.curve import Curve, curve
     from mbsd.pictures import Animation, Picture, Svg
+    from mbsd.results.fluids import GasView, HydraulicView
     from mbsd.results.force_view import ForceView
     from mbsd.results.friction import FrictionView
-    from mbsd.results.gas import GasView
-    from mbsd.results.hydraulics import HydraulicView
-    from mbsd.results.mobility import Mobility
     from mbsd.results.solution import Solution
-    from mbsd.results.views import ContactView, DriverView, EnergyView, FrameView, JointView, Stats
+    from mbsd.results.views import ContactView, DriverView, EnergyView, FrameView, JointView, Mobility, Stats
     from mbsd.studies.simulated import Simulated, simulated
     from mbsd.studies.study import study
     from mbsd.synthesis.fit_path import PathFit, SynthesisError, fit_path
@@ -160,21 +156,21 @@ _LATER = {
     "EnergyView": "mbsd.results.views",
     "Equilibrium": "mbsd.analyses.equilibrium",
     "Event": "mbsd.model.event",
-    "Finding": "mbsd.analyses.suspicious_units",
+    "Finding": "mbsd.analyses.findings",
     "Force": "mbsd.mechanism",
     "ForceView": "mbsd.results.force_view",
     "FrameView": "mbsd.results.views",
     "FrictionView": "mbsd.results.friction",
     "GasCycle": "mbsd.model.cylinders.cycle",
-    "GasView": "mbsd.results.gas",
-    "HydraulicView": "mbsd.results.hydraulics",
+    "GasView": "mbsd.results.fluids",
+    "HydraulicView": "mbsd.results.fluids",
     "Happening": "mbsd.model.event",
     "Joint": "mbsd.mechanism",
     "JointView": "mbsd.results.views",
     "Linearisation": "mbsd.analyses.state_space",
     "Marker": "mbsd.mechanism",
     "Mechanism": "mbsd.mechanism",
-    "Mobility": "mbsd.results.mobility",
+    "Mobility": "mbsd.results.views",
     "Mode": "mbsd.analyses.modes",
     "Moment": "mbsd.dynamics.events.moment",
     "Motion": "mbsd.model.laws",
@@ -199,12 +195,12 @@ _LATER = {
     "distance_reaches": "mbsd.model.event",
     "flywheel": "mbsd.balancing.flywheel",
     "fit_path": "mbsd.synthesis.fit_path",
-    "four_stroke": "mbsd.model.cylinders.four_stroke",
+    "four_stroke": "mbsd.model.cylinders.engine_cycles",
     "function": "mbsd.model.laws",
     "harmonic": "mbsd.model.laws",
     "optimise": "mbsd.synthesis.optimise",
     "polynomial": "mbsd.model.laws",
-    "pressure_table": "mbsd.model.cylinders.pressure_table",
+    "pressure_table": "mbsd.model.cylinders.engine_cycles",
     "recorded": "mbsd.model.laws",
     "speed_reaches": "mbsd.model.event",
     "Simulated": "mbsd.studies.simulated",
@@ -212,7 +208,7 @@ _LATER = {
     "study": "mbsd.studies.study",
     "table": "mbsd.model.laws",
     "tolerances": "mbsd.tolerancing.tolerances",
-    "two_stroke": "mbsd.model.cylinders.two_stroke",
+    "two_stroke": "mbsd.model.cylinders.engine_cycles",
 }
 """Where each name is; it is loaded when it is asked for, so that the stages can look at what changed without numpy."""
 

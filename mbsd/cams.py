@@ -7,9 +7,8 @@ m.cam_roller("contact", disc.origin, follower.origin, cam)
 """
 
 from mbsd.model.cams.followers import cam_from, flat_cam, oscillating_flat_cam, oscillating_roller_cam, roller_cam
-from mbsd.model.cams.lift import Lift
+from mbsd.model.cams.lift import RISES, Lift
 from mbsd.model.cams.profile import CamProfile
-from mbsd.model.cams.rises import RISES
 
 __all__ = [
     "RISES",

@@ -17,9 +17,9 @@ import numpy as np
 
 from mbsd.base.arguments import checked_methods
 from mbsd.base.quantity import counted
-from mbsd.building import Building
-from mbsd.model.adding.forces import Amount
 from mbsd.model.body import Body, Marker
+from mbsd.model.building import Building
+from mbsd.model.entries import Amount
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import STANDARD_GRAVITY, Start
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from mbsd.analyses.efforts import ActuatedMotion
     from mbsd.analyses.equilibrium import Equilibrium
-    from mbsd.analyses.finding import Finding
+    from mbsd.analyses.findings import Finding
     from mbsd.analyses.modes import Mode
     from mbsd.analyses.state_space import Linearisation
     from mbsd.derivatives.sensitivities import Sensitivities
@@ -38,8 +38,8 @@ if TYPE_CHECKING:
     from mbsd.dynamics.measures.kinds import Measure
     from mbsd.kinematics.batch import Batch
     from mbsd.pictures import Picture, Svg
-    from mbsd.results.mobility import Mobility
     from mbsd.results.solution import Solution
+    from mbsd.results.views import Mobility
 
 __all__ = ["STANDARD_GRAVITY", "Body", "Force", "Joint", "Marker", "Mechanism", "Start"]
 
@@ -54,8 +54,7 @@ class Mechanism(Building):
         The first solution warns of the former (ModelWarning) and raises the latter as an error. Notes (``is_note``)
         come last: closed chains of four links that have change points.
         """
-        from mbsd.analyses.change_point_chains import change_point_chains
-        from mbsd.analyses.start import start_problems
+        from mbsd.analyses.findings import change_point_chains, start_problems
         from mbsd.analyses.suspicious_units import check
 
         odd = check(self) or list(start_problems(self))  # a wrong unit keeps links from closing, too
@@ -321,6 +320,12 @@ class Mechanism(Building):
         from mbsd.drawing.drawer import SkeletonDrawer
 
         return SkeletonDrawer()
+
+    def marker_in_world(self, body: Body, x: float, y: float, angle: float) -> Marker:
+        """See :meth:`mbsd.model.body.Body.at_world`."""
+        from mbsd.kinematics.pose.world_places import marker_in_world
+
+        return marker_in_world(self, body, x, y, angle)
 
     # -- files -------------------------------------------------------------------------------------------------
 

@@ -15,9 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.analyses.pose_step import longest_step, pose_step
-from mbsd.analyses.statics import STEP, Statics
-from mbsd.analyses.tangent import tangent
+from mbsd.analyses.statics import STEP, Statics, longest_step, pose_step, tangent
 from mbsd.base.errors import EquilibriumError
 from mbsd.base.names import Suggesting
 from mbsd.base.quantity import written

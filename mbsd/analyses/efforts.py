@@ -17,7 +17,7 @@ from mbsd.arrays.approaches import approached_along
 from mbsd.arrays.curve_branches import tabulate_along
 from mbsd.arrays.efforts_beside import fill_beside
 from mbsd.arrays.friction_along import with_friction
-from mbsd.arrays.inertias import coupled
+from mbsd.arrays.inertias import coupled, inertia_of, weight_of
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
@@ -30,10 +30,9 @@ from mbsd.base.errors import MobilityError, ModelError
 from mbsd.base.names import Suggesting, no_such, shown
 from mbsd.kinematics.limits.closed_contacts import refuse_pushing
 from mbsd.kinematics.pose.phases import take_decided
-from mbsd.model.adding.forces import Amount, add_force, amount_given
+from mbsd.model.entries import Amount, add_force, amount_given
 from mbsd.model.force import Force, ForceKind
-from mbsd.model.forces.actuator import ACTUATOR
-from mbsd.model.forces.torque import TORQUE
+from mbsd.model.forces.loads import ACTUATOR, TORQUE
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model, names_given
 from mbsd.results.solution import Solution
@@ -169,17 +168,14 @@ def _actuated(m: Model, motion: Solution, actuators: Sequence[str]) -> ActuatedM
     q, v, a = (part.reshape(len(motion.t), -1) for part in (motion.q, motion.v, motion.a))
     q, v, a = np.ascontiguousarray(q), np.ascontiguousarray(v), np.ascontiguousarray(a)
     count, rows = len(q), len(packed.ws.phi)
-    system = packed.system
-    inertia = np.stack([system.mass, system.mass, system.inertia], axis=1).ravel()
-    weight = np.zeros((len(system.mass), 3))
-    weight[:, :2] = system.mass[:, None] * system.gravity
     laws = compiled_laws(packed, float(motion.t[0]), float(motion.t[-1]))
     loads = pack_loads(packed)
     approached, times = motion.approached, motion.t if motion.law_times is None else motion.law_times
     if approached is None:
         approached = approached_along(packed, loads, laws, times, q, v)
     applied = loads_along(packed, loads, laws, times, q, v, approached, _states(packed, motion))
-    right = (weight.ravel() + applied - inertia * a)[:, 3:]
+    inertia, weight = inertia_of(packed), weight_of(packed)
+    right = (weight + applied - inertia * a)[:, 3:]
     push = np.stack([_directions(packed, bare.forces[name], q, times)[:, 3:] for name in actuators], axis=1)
     phi, gamma, compact = np.zeros((count, rows)), np.zeros((count, rows)), np.zeros((count, rows, 6))
     tabulate_along(packed, packed.drives(times), q, v, phi, compact, gamma)
@@ -193,7 +189,7 @@ def _actuated(m: Model, motion: Solution, actuators: Sequence[str]) -> ActuatedM
     )
     applied += friction
     columns = packed.column_scale()
-    terms = (weight.ravel()[3:], applied[:, 3:], inertia[3:] * a[:, 3:])
+    terms = (weight[3:], applied[:, 3:], inertia[3:] * a[:, 3:])
     largest = np.max([np.abs(term * columns).reshape(-1, len(columns)).max(axis=0) for term in terms], axis=0)
     group = coupled(packed)[1:].repeat(3)  # bodies that nothing connects are not measured by each other's loads
     of_group = np.zeros(group.max(initial=0) + 1)

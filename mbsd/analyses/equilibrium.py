@@ -14,9 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.analyses.balance import FLAT, NoneFound, descend, look, newton
-from mbsd.analyses.pose_step import pose_step
-from mbsd.analyses.statics import STEP, Statics, statics
-from mbsd.analyses.tangent import Independent, independent_coordinates
+from mbsd.analyses.statics import STEP, Independent, Statics, independent_coordinates, pose_step, statics
 from mbsd.arrays.driver_laws import refuse_bad_laws
 from mbsd.arrays.packing import pack
 from mbsd.arrays.reactions import wrenches

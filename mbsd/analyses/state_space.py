@@ -21,9 +21,7 @@ import numpy as np
 
 from mbsd.analyses.efforts import unit_direction
 from mbsd.analyses.modes import Mode, modes_of
-from mbsd.analyses.pose_step import pose_step
-from mbsd.analyses.statics import DIFFERENCES, OFFSETS
-from mbsd.analyses.tangent import Independent, independent_coordinates, tangent
+from mbsd.analyses.statics import DIFFERENCES, OFFSETS, Independent, independent_coordinates, pose_step, tangent
 from mbsd.arrays.inertias import coupled
 from mbsd.arrays.loads import SHARP
 from mbsd.arrays.states import columns_of, ones_of, without_states

@@ -1,7 +1,11 @@
 """Suspicious values that are allowed, with a remedy: a mixed-up unit, a start that contradicts itself.
 
-Only what is off by more than machines ever are counts: sizes a hundredfold apart, masses 1e5 apart, an inertia whose
-radius of gyration is 20 sizes, marker angles of whole degrees beyond a turn. Silence proves nothing.
+Only values that are off by more than mechanisms ever are count: sizes a hundredfold apart, masses 1e5 apart, an inertia
+whose radius of gyration is 20 sizes, marker angles of whole degrees beyond a turn. Silence proves nothing.
+
+Sides of a joint or force may lie in different planes z. A pin, a guide or a weld may be as long as it must. Teeth,
+cams, rolling bodies and contacts touch in one plane, and a rod or a spring between two planes would be inclined, which
+planar equations do not know.
 """
 
 from __future__ import annotations
@@ -11,13 +15,107 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from mbsd.analyses.finding import Finding
-from mbsd.analyses.suspicious_forces import plays, pressures, springs, welds
+from mbsd.analyses.findings import Finding
+from mbsd.base.codes import LINE
 from mbsd.base.errors import ModelWarning
 from mbsd.base.warning import warn
 from mbsd.model.body import Body, Marker
+from mbsd.model.force import Force
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
+
+ONE_PLANE = 1e-9
+"""Places nearer than this are one plane (m)."""
+
+
+def apart(m: Model) -> Iterator[tuple[str, str, float, float]]:
+    """Name, kind, and places (m) of both sides, where these differ and cannot; a place that was not given fits all."""
+    for part in (*m.joints.values(), *m.drivers.values(), *m.contacts.values(), *m.forces.values()):
+        i, j = _plane(m, part.i), _plane(m, part.j)
+        if i is not None and j is not None and abs(i - j) > ONE_PLANE and _needs_one(part):
+            yield part.name, part.kind.name, i, j
+
+
+def _plane(m: Model, marker: Marker) -> float | None:
+    return None if marker.z is None and marker.body is m.ground else marker.plane
+
+
+def _needs_one(part: Joint | Force) -> bool:
+    if isinstance(part, Force):
+        return any(element.kind == LINE for element in part.kind.elements(part))
+    return part.kind.touching != "" or bool({"distance", "gear"} & set(part.kind.constraints))
+
+
+LEAST_PRESSURE = 1000.0
+"""Pa: a hundredth of the air's. Less is a pressure in bar, or a vacuum that nobody needs to give a number."""
+STEEL = 2.1e11
+"""Young's modulus of steel (Pa)."""
+LOOSE = 0.1
+"""Part of a bearing's radius: a running fit has about a thousandth, and worn joints some hundredths."""
+THICK_BAR = 0.1
+"""A spring that is stiffer than a solid steel bar as long as the mechanism and this part of it thick is none."""
+
+
+def pressures(m: Model) -> Iterator[Finding]:
+    """Pressures between nothing and a hundredth of the air's."""
+    for name, force in m.forces.items():
+        for word, value in force.given.items():
+            if (
+                "pressure" in word
+                and word != "pressure_angle"
+                and isinstance(value, int | float)
+                and 0.0 < value < LEAST_PRESSURE
+            ):
+                yield Finding(
+                    f"force '{name}'", f"{word} is {value:g} Pa, where the air has 101325",
+                    "Pressures are in pascal: multiply bar by 1e5",
+                )  # fmt: skip
+
+
+def springs(m: Model, size: float) -> Iterator[Finding]:
+    """Springs that are stiffer than a solid bar; ``size`` (m) is the mechanism's."""
+    most = STEEL * THICK_BAR**2 * size
+    for name, force in m.forces.items():
+        stiffness = force.params.get("stiffness")
+        if "free_length" in force.params and isinstance(stiffness, int | float) and stiffness > most > 0.0:
+            yield Finding(
+                f"spring '{name}'",
+                f"its stiffness of {stiffness:.3g} N/m is more than that of a steel bar as long as the mechanism and a "
+                f"tenth as thick ({most:.1e} N/m)",
+                "Stiffness is in N/m: N/mm are multiplied by 1000. What does not give way is m.distance or m.weld",
+            )
+
+
+def plays(m: Model) -> Iterator[Finding]:
+    """Bearings in which the journal has much room."""
+    for name, force in m.forces.items():
+        if force.kind.journal is None:
+            continue
+        radius, clearance = force.kind.journal(force)
+        if clearance > LOOSE * (radius + clearance):
+            yield Finding(
+                f"force '{name}'",
+                f"its clearance of {clearance:g} m is {clearance / (radius + clearance):.0%} of the bearing's radius",
+                "Clearance and radius are in metres: 0.1 mm is 0.1e-3; a running fit has about a thousandth of the "
+                "radius",
+            )
+
+
+def welds(m: Model) -> Iterator[Finding]:
+    """Welds between two bodies that another joint connects as well."""
+    pairs: dict[frozenset[str], list[str]] = {}
+    for name, joint in m.joints.items():
+        pairs.setdefault(frozenset(joint.bodies), []).append(name)
+    for name, joint in m.joints.items():
+        others = [other for other in pairs[frozenset(joint.bodies)] if other != name]
+        if {"point", "angle"} <= set(joint.kind.constraints) and others:
+            first, second = joint.bodies
+            yield Finding(
+                f"weld '{name}'",
+                f"it fixes '{second}' to '{first}', which '{others[0]}' connects as well and then lets nothing move",
+                "Leave one of the two joints out",
+            )
+
 
 SIZE_GAP = 100.0
 """Between neighbours in the sorted list of sizes; millimetres taken for metres are 1000 apart."""
@@ -31,7 +129,7 @@ SAME = 1e-9
 """Places closer than this part of the largest number are equal but for rounding."""
 LARGE, THIN = 10.0, 0.05
 """A body larger than this (m) and lighter than this (kg/m) is a wire, or millimetres."""
-THICK, FAST = 1.0, 50.0
+WIDE_BORE, FAST = 1.0, 50.0
 """Bore over the length of a cylinder that is fully in, and speed of its piston at its rated flow (m/s), beyond which
 they are not metres or not m^3/s."""
 TURNS = 2.0
@@ -284,7 +382,6 @@ def _assemblies(m: Model) -> Iterator[Finding]:
 def _planes(m: Model) -> Iterator[Finding]:
     if all(body.z is None for body in m.bodies.values()):
         return
-    from mbsd.analyses.planes import apart
 
     for name, kind, i, j in apart(m):
         yield Finding(
@@ -299,7 +396,7 @@ def _hydraulics(m: Model) -> Iterator[Finding]:
         if force.kind.oil is None:
             continue
         oil, p = force.kind.oil(force), force.params
-        if p["bore"] > THICK * p["retracted"]:
+        if p["bore"] > WIDE_BORE * p["retracted"]:
             yield Finding(
                 name,
                 f"its bore is {_metres(p['bore'])}, and fully in it is {_metres(p['retracted'])} long",

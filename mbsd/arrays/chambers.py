@@ -14,7 +14,7 @@ from mbsd.arrays.reactions import marker_axes, marker_places
 from mbsd.base.errors import ModelError, ModelWarning
 from mbsd.base.warning import warn
 from mbsd.model.cams.profile import hermite
-from mbsd.model.chamber import Chamber
+from mbsd.model.force import Chamber
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed

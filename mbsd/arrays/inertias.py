@@ -21,6 +21,12 @@ def inertia_of(packed: Packed) -> np.ndarray:
     return inertia
 
 
+def weight_of(packed: Packed) -> np.ndarray:
+    """Return (3 nb,) M g (N) of each body, ground included."""
+    gravity = [*packed.system.gravity, 0.0]
+    return (inertia_of(packed).reshape(-1, 3) * gravity).ravel()
+
+
 def usual_inertia(packed: Packed) -> np.ndarray:
     """Return M (3 nb,), with the largest mass and the size of connected bodies where M is zero."""
     inertia, mass = inertia_of(packed), packed.system.mass

@@ -8,7 +8,7 @@ import numpy as np
 
 from mbsd.base.codes import PIECES
 from mbsd.equations.laws import Laws
-from mbsd.model.laws.fitting.cuts import finest
+from mbsd.model.laws.fitting.leaves import finest
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed

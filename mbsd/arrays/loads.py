@@ -151,7 +151,7 @@ def _callback(packed: Packed, force: Force) -> Callback:
 
 
 def law_address(packed: Packed, force: Force) -> int:
-    """Where the law of a spring is, a function of its value and rate; see mbsd/model/forces/spring_law.py."""
+    """Where the law of a spring is, a function of its value and rate; see mbsd/model/forces/springs.py."""
     law = force.params["law"]
     return packed.specials.callback(
         f"{packed.name}: force '{force.name}'", lambda what: Callback(_timed(law), (1, 1), 1, what)

@@ -17,9 +17,8 @@ from mbsd.arrays.system_arrays import Parts, arrays_of
 from mbsd.base.users_function import law_of, tell_missed
 from mbsd.equations.products import spread_rows
 from mbsd.equations.system import System, Workspace
-from mbsd.model.contact import ContactKind
 from mbsd.model.force import Force, Masses
-from mbsd.model.joint import ROWS, SPECIALS, Joint
+from mbsd.model.joint import ROWS, SPECIALS, ContactKind, Joint
 from mbsd.model.laws import Motion
 from mbsd.model.mechanism import Model
 
@@ -117,6 +116,11 @@ class Packed:
     def joint_of_row(self, row: int) -> Joint:
         """The joint that owns a row of J."""
         return self.joints[int(np.searchsorted(self.first_row, row, side="right")) - 1]
+
+    def rows_of(self, joint: str | int) -> range:
+        """Return the rows of J of a joint, driver or contact, by its name or its place in ``joints``."""
+        k = [each.name for each in self.joints].index(joint) if isinstance(joint, str) else joint
+        return range(int(self.first_row[k]), int(self.first_row[k + 1]))
 
     def motion_of(self, number: int) -> int:
         """The motion of a joint or driver by its place in ``joints``; 0 for joints."""

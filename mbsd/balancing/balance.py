@@ -26,8 +26,8 @@ from mbsd.base.errors import ModelError
 from mbsd.base.names import Suggesting, no_such
 from mbsd.base.quantity import written
 from mbsd.model.body import Body
-from mbsd.results.vibration.crank import crank_of
-from mbsd.results.vibration.shaking import planes_of
+from mbsd.results.orders import crank_of
+from mbsd.results.shaking import planes_of
 
 ROUNDING = 1e-9
 """Part of the sum of all shares below which a quantity is rounding."""

@@ -9,8 +9,7 @@ from functools import lru_cache
 from pathlib import Path
 from types import ModuleType
 
-from mbsd.dependencies.inputs import Inputs, Places
-from mbsd.dependencies.meaning import looks_at_itself, parsed
+from mbsd.dependencies.inputs import Inputs, Places, looks_at_itself, parsed
 
 
 def modules_below(

@@ -25,13 +25,12 @@ from mbsd.derivatives.free.linear_motion import LATEST, NODES
 from mbsd.derivatives.free.mesh import ROUNDING, apart, first_edges, looked_at, nodes_of
 from mbsd.derivatives.free.step_errors import Finish, refined_to_error
 from mbsd.derivatives.free.stretch import Stretch, Tangents, joined
-from mbsd.derivatives.numbers.near_numbers import Near
 from mbsd.derivatives.numbers.straight_variants import variants_beside
 from mbsd.derivatives.numbers.terms import Along
-from mbsd.derivatives.numbers.variants import KINKED, SECOND, TINY, Variants, Variation, models_of
+from mbsd.derivatives.numbers.variants import ALLOWED, FAR, KINKED, SECOND, TINY, Variants, Variation, models_of
 from mbsd.derivatives.refused_motions import refuse, refuse_opened, refuse_parted
 from mbsd.derivatives.smooth.independent_tangents import IndependentTangents, suits
-from mbsd.derivatives.smooth.sides import BothSides, Sides
+from mbsd.derivatives.smooth.sides import BothSides
 from mbsd.derivatives.smooth.smooth_motion import (
     CLOSE,
     Motion,
@@ -51,12 +50,6 @@ from mbsd.kinematics.pose.phases import take_decided
 from mbsd.model.mechanism import Model
 from mbsd.numbers.names import Number
 from mbsd.results.solution import Solution
-
-FAR, ALLOWED = 1e-5, 4.0
-"""A variant's motion is this far from the motion itself, in sizes and rad, where its usual step takes it farther than
-so many times this: near a toggle, and after long, a small change of a number is a large one of the motion."""
-SOME = 5
-"""Looks at the motion for one that tells how far that is."""
 
 
 class SimulationTangents:
@@ -89,8 +82,7 @@ class SimulationTangents:
         self.variation = Variation(m, self.terms, span, self._closed, contacts, starts=True)
         reached = grid[grid <= first.t[-1]]
         self._variants: list[Variants] | None = None
-        self._sides: list[Sides] | None = None
-        self._near: list[Near | None] = []
+        self._both: BothSides | None = None
         self._met = np.append(
             first.t[:-1][np.diff(first.t) <= 0.0], first.t[len(first.t) - 1 :][first.t[-1] > reached[-1]]
         )
@@ -142,46 +134,32 @@ class SimulationTangents:
         coordinates = suits(ready)
         if self._first.q is None or ready is None or coordinates is None or has_kinks(self.terms):
             raise NotSmooth
-        asked, arrays = self._of_bodies, coordinates.copied(self._runs.tolerance)
-        begins = self._sides is None
-        if self._sides is None:
-            self._both = BothSides(ready, coordinates, arrays, self.variation)
-            self._sides, self._near = self._both.of(self.m, self._numbers, asked is None), self._both.near
-        independent = IndependentTangents(ready, coordinates, arrays, self._sides)
-        if begins:
-            first, some = self._first, slice(None, None, SOME)
-            assert first.q is not None
-            self._come_nearer(independent, independent.reaches_alone(first.t[some], first.q[some], first.v[some]))
-        line = independent.carry(self._first, nodes_of(edges, self._met))
+        asked = self._of_bodies
+        if self._both is None:
+            arrays = coordinates.copied(self._runs.tolerance)
+            self._both = BothSides(self.m, ready, coordinates, arrays, self.variation, self._numbers, asked is None)
+        both = self._both
+        independent = IndependentTangents(ready, coordinates, both)
+        line, needed = independent.carry(self._first, nodes_of(edges, self._met)), self._needed(self._grid)
 
         def finish() -> Tangents | None:
-            out, needed = self._recorded(), self._needed(self._grid)
+            out = self._recorded()
             if asked is None:
                 self._take(out.solve(), needed)
                 along = replace(self.along, held=np.ones(self.along.lam.shape, bool))
                 rows, compact = self.stretch_rows(along, 0), self.terms.rows(along)[2]
-                self._variants = variants_beside(self.variation, self._numbers, self._near)
+                self._variants = variants_beside(self.variation, self._numbers, both.near)
                 return independent.at(self.terms, along, compact, rows, line, self._variants)
             self.t, self.solve = out.t, out.solve
             there = out if len(needed) == len(out.t) else out.take(needed)
-            also = self.m.traces, line.at(there.t), asked.accelerations
-            motions, weights = independent.motions(there, *also)
-            if self._come_nearer(independent, independent.reaches(motions)):
-                motions, weights = independent.motions(there, *also)
+            motions, weights = independent.motions(there, self.m.traces, line.at(there.t), asked.accelerations)
             itself = independent.motion(out, self.m.traces)
             for label, of in asked.by_label.items():
                 self.values[label] = of(itself)[0]
                 self.slopes[label] = np.moveaxis(np.tensordot(weights, of(motions), axes=1), 0, -1)
             return None
 
-        return line.errors, finish
-
-    def _come_nearer(self, independent: IndependentTangents, reaches: list[float]) -> bool:
-        """Take other sides of numbers that reach too far; True if some did."""
-        far = {p: reach for p, reach in enumerate(reaches) if reach > ALLOWED * FAR}
-        for p, reach in far.items():
-            independent.every[p] = self._both.nearer(p, TINY * FAR / reach, self.m.traces)
-        return bool(far)
+        return line.errors_of(self._grid[needed]), finish
 
     def _between_looks(self, edges: np.ndarray) -> tuple[np.ndarray, Finish]:
         """The same of a smooth motion in reference coordinates. Raises NotSmooth."""

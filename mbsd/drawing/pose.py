@@ -14,7 +14,7 @@ from mbsd.base.errors import AssemblyError, ModelError
 from mbsd.base.names import shown
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model
-from mbsd.results.releases import released_rows
+from mbsd.results.rows import released_rows
 
 if TYPE_CHECKING:
     from mbsd.model.force import Force

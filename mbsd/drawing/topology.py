@@ -21,7 +21,7 @@ from mbsd.model.force import Force, ForceKind
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
 from mbsd.pictures import Svg
-from mbsd.results.mobility import Mobility
+from mbsd.results.views import Mobility
 
 MOST_NODES = 600
 """Bodies, joints and drivers that one diagram can show."""

@@ -54,7 +54,7 @@ from mbsd.compiling.alternatives import Alternatives, alternatives
 from mbsd.compiling.jit import inlined, shared
 from mbsd.dynamics.independent import equations
 from mbsd.dynamics.independent.arrays import Embedding
-from mbsd.dynamics.reference import acceleration, projection, refinement, rows
+from mbsd.dynamics.reference import acceleration, projection, refinement
 from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.reference.arrays import without_contacts as without_contacts_in_plane
 from mbsd.dynamics.state import EVALUATIONS, POWER, STARTED, TIME
@@ -141,9 +141,9 @@ keep_row = alternatives({Embedding: equations.keep_row}, _keep_row)
 join_rows = alternatives({Embedding: equations.join_rows}, _join_rows)
 record_here = alternatives({Embedding: equations.record_here}, _record_here)
 measure = alternatives({Dynamics: projection.measure})
-measure_gaps = alternatives({Dynamics: rows.measure_gaps})
-along = alternatives({Dynamics: rows.along})
-push = alternatives({Dynamics: rows.push})
+measure_gaps = alternatives({Dynamics: projection.measure_gaps})
+along = alternatives({Dynamics: projection.along})
+push = alternatives({Dynamics: projection.push})
 respond = alternatives({Dynamics: refinement.respond})
 without_contacts = alternatives({Dynamics: without_contacts_in_plane})
 

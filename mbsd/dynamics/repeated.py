@@ -29,8 +29,8 @@ from mbsd.dynamics.simulate import (
 )
 from mbsd.dynamics.state import Output
 from mbsd.model.mechanism import Model
+from mbsd.results.shaking import planes_of
 from mbsd.results.solution import Solution
-from mbsd.results.vibration.shaking import planes_of
 
 
 @dataclass

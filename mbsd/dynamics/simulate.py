@@ -46,8 +46,8 @@ from mbsd.kinematics.multipliers import JACOBIAN_NUMBERS
 from mbsd.model.event import Event
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import equal_times, rising_times
-from mbsd.results.jump_rows import Asked, jumps_of
 from mbsd.results.measured import check_states
+from mbsd.results.rows import Asked, jumps_of
 from mbsd.results.solution import Solution
 from mbsd.results.views import Stats
 

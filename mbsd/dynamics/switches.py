@@ -20,8 +20,7 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.equations.joint_friction import BY_RATE, FIRST, NONE, SENSE, WAY
 from mbsd.equations.loads import Loads
-from mbsd.model.contact import ContactKind
-from mbsd.model.joint import Joint, JointKind
+from mbsd.model.joint import ContactKind, Joint, JointKind
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,20 +43,14 @@ class RunContact:
         """The contact's name."""
         return self.joint.name
 
+    def given(self, argument: str) -> float:
+        """Return a number of the contact, 0 where it has none."""
+        return float(self.joint.params.get(argument, 0.0))
+
     @property
     def friction(self) -> float:
         """Coulomb's coefficient."""
-        return self.joint.params.get("friction", 0.0)
-
-    @property
-    def static_friction(self) -> float:
-        """Coulomb's coefficient while it sticks."""
-        return self.joint.params.get("static_friction", 0.0)
-
-    @property
-    def restitution(self) -> float:
-        """The speed after an impact divided by the speed before."""
-        return self.joint.params.get("restitution", 0.0)
+        return self.given("friction")
 
 
 SETTLE = 1e-4
@@ -79,7 +72,7 @@ class Switches:
         for k, joint in enumerate(packed.joints[first:], first):
             if not isinstance(joint.kind, ContactKind):
                 continue  # the row of a joint that sticks
-            row = int(packed.first_row[k])
+            row = packed.rows_of(k).start
             slow = SETTLE * float(np.sqrt(np.hypot(*packed.system.gravity) / packed.size or 1.0))
             slippery = joint.params.get("friction", 0.0) == 0.0
             self.contacts.append(
@@ -130,7 +123,7 @@ class Switches:
 def friction_rows(packed: Packed) -> np.ndarray:
     """Return (c, 2) rows of the gap and of the sliding of contacts with friction."""
     rows = [
-        (packed.first_row[k], packed.first_row[k] + 1)
+        tuple(packed.rows_of(k)[:2])
         for k, joint in enumerate(packed.joints)
         if isinstance(joint.kind, ContactKind) and joint.params.get("friction", 0.0) != 0.0
     ]
@@ -170,7 +163,7 @@ class JointStick:
 
 def joint_sticks(packed: Packed, loads: Loads) -> list[JointStick]:
     """Return the joints that may stick of a packed mechanism with the rows of ``stuck_rows``."""
-    name_of = {int(packed.first_row[k]): joint.name for k, joint in enumerate(packed.joints)}
+    name_of = {packed.rows_of(k).start: joint.name for k, joint in enumerate(packed.joints)}
     return [JointStick(name_of[way], way, at) for at, way in enumerate(loads.friction[:, WAY].tolist()) if way >= 0]
 
 

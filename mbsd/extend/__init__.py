@@ -18,16 +18,24 @@ from mbsd.base.codes import (
     PUSH,
     TURN,
 )
-from mbsd.model.adding.contacts import add_contact, frictions_given, stop_given
-from mbsd.model.adding.forces import Amount, add_force, amount_given, amounts_given
-from mbsd.model.adding.joints import Law, Limits, join, limits_given, phase_given, radii_given
 from mbsd.model.body import Body, Marker
-from mbsd.model.contact import ContactKind
-from mbsd.model.contact import register as register_contact
-from mbsd.model.force import Element, Force, ForceKind, Interaction, States, Term
-from mbsd.model.force import register as register_force
-from mbsd.model.joint import Joint, JointKind
-from mbsd.model.joint import register as register_joint
+from mbsd.model.entries import (
+    Amount,
+    Law,
+    Limits,
+    add_contact,
+    add_force,
+    amount_given,
+    amounts_given,
+    frictions_given,
+    join,
+    limits_given,
+    phase_given,
+    radii_given,
+    stop_given,
+)
+from mbsd.model.force import Element, Force, ForceKind, Interaction, States, Term, register_force
+from mbsd.model.joint import ContactKind, Joint, JointKind, register_contact, register_joint
 from mbsd.model.mechanism import Model, length_given, number_given
 
 __all__ = [

@@ -15,7 +15,7 @@ from mbsd.dynamics.formulation import record_output as record
 from mbsd.dynamics.integrators.full_matrix import differentiate, factor_full, solve_full, too_large
 from mbsd.dynamics.integrators.kind import Integrator, Option, without_sliding
 from mbsd.dynamics.integrators.kind import register as register_integrator
-from mbsd.dynamics.integrators.others.outside import PULL, STAGES, Rates, Stepper, advance_with, tolerances
+from mbsd.dynamics.integrators.outside import PULL, STAGES, Rates, Stepper, advance_with, tolerances
 from mbsd.dynamics.integrators.step_size import allowed, first_step
 from mbsd.dynamics.state import (
     ACCEPTED,

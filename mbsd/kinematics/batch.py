@@ -124,7 +124,7 @@ def _rod(m: Model, packed: Packed, name: str) -> int | None:
         return None
     if name in m.bodies:
         raise ModelError(f"{m.name}: batch: '{name}' is a body and a rod; give one of them another name")
-    row = packed.first_row[packed.joints.index(joint)]
+    row = packed.rows_of(name).start
     return int(np.flatnonzero(packed.system.distance[:, 2] == row)[0])
 
 

@@ -19,6 +19,7 @@ import numpy as np
 
 from mbsd.arrays.approaches import approached_along
 from mbsd.arrays.friction_along import with_friction
+from mbsd.arrays.inertias import inertia_of, weight_of
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
@@ -66,13 +67,9 @@ def inverse_dynamics(
 
     ``states`` (T, n): those of forces (SI), where any has some.
     """
-    packed, system = ready.packed, ready.packed.system
+    packed = ready.packed
     count, rows = len(q), len(packed.ws.phi)
-    inertia = system.mass.repeat(3)
-    inertia[2::3] = system.inertia
-    weight = np.zeros((len(system.mass), 3))
-    weight[:, :2] = system.mass[:, None] * system.gravity
-    loads, packed_loads, approached = weight.ravel() - inertia * a, None, None
+    loads, packed_loads, approached = weight_of(packed) - inertia_of(packed) * a, None, None
     if packed.forces:
         laws = compiled_laws(packed, float(times[0]), float(times[-1]))
         packed_loads = pack_loads(packed)

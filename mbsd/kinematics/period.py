@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.base.errors import MechanismError, ModelWarning
-from mbsd.results.returned import RETURNED, Ends, returned
+from mbsd.results.solution import RETURNED, Ends, returned
 
 if TYPE_CHECKING:
     from mbsd.kinematics.prepared import Prepared

@@ -11,7 +11,7 @@ from mbsd.kinematics.elimination import Elimination, Factors
 from mbsd.kinematics.groups.blocks import Blocks
 from mbsd.kinematics.groups.groups import Groups
 from mbsd.kinematics.groups.plan import describe
-from mbsd.results.mobility import Mobility
+from mbsd.results.views import Mobility
 
 
 @dataclass

@@ -29,10 +29,9 @@ from mbsd.kinematics.prepared import Prepared
 from mbsd.kinematics.states_along import states_along
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import equal_times, rising_times
-from mbsd.results.jump_rows import Asked, jumps_of
 from mbsd.results.measured import check_states
-from mbsd.results.returned import returned
-from mbsd.results.solution import Beside, Solution
+from mbsd.results.rows import Asked, jumps_of
+from mbsd.results.solution import Beside, Solution, returned
 from mbsd.results.views import Stats
 
 

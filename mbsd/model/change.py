@@ -4,21 +4,36 @@ A joint, driver, force or contact is made anew by the method of its kind's name,
 gave of numbers and laws, and the new ones; so what the method refuses stays refused, and what it derives from them is
 derived anew. Its place among the others stays too, and compiled code is used as it is. A body is made anew likewise,
 and the one that is there takes its numbers, as markers hold it.
+
+The types of the arguments of the function that adds an entry say what they are:
+
+Marker                   one of the two markers
+Body | str               a body of one of them, or its name; with None one that may be left out
+str | Body               another body, which the params keep by its name
+Law                      a law of time: a Motion, or a function
+Amount                   a number, or a law of time
+Curve, Curve | None      a characteristic curve
+all others               numbers, switches, texts and lists, which Joint.params and Force.params keep by name
 """
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
+from enum import Enum
+from functools import lru_cache
+from typing import Any, NamedTuple
 
+from mbsd.base.arguments import types_of
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.model.body import Body, Marker, at_end
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
+from mbsd.model.laws import Motion
+from mbsd.model.laws.curve import Curve
 from mbsd.model.mechanism import Model, connections, new_bar, new_body
-from mbsd.model.roles import Role, arguments
 
 BODY = ("mass", "com", "inertia", "z", "products")
 BAR = ("length", *BODY)
@@ -183,3 +198,45 @@ def _refuse_others(m: Model, what: str, values: Mapping[str, Any], known: tuple[
     others = [key for key in values if key not in known]
     if others:
         raise ModelError(f"{m.name}: {what}: {no_such('argument', others[0], known)}")
+
+
+class Role(Enum):
+    """The role of an argument."""
+
+    MARKER, BODY, OPTIONAL_BODY, LAW, AMOUNT, CURVE, VALUE = range(7)
+
+
+class Argument(NamedTuple):
+    """One argument of a function that adds something to a model."""
+
+    name: str
+    role: Role
+    types: tuple[Any, ...]
+    """That it may have; one that is not known where the function stands is text."""
+    needed: bool
+    """Whether it has no default."""
+    several: bool
+    """Whether it stands for any number of arguments, as ``*bodies`` does."""
+
+
+@lru_cache(maxsize=512)
+def arguments(add: Callable[..., Any]) -> tuple[Argument, ...]:
+    """Return arguments of ``add(m, name, ...)`` after the mechanism and the name, or of a law's function."""
+    known = types_of(add)
+    return tuple(
+        Argument(p.name, _role(known[p.name]), known[p.name], p.default is p.empty, p.kind is p.VAR_POSITIONAL)
+        for p in inspect.signature(add).parameters.values()
+        if p.name not in ("m", "name") and Model not in known[p.name]
+    )
+
+
+def _role(types: tuple[Any, ...]) -> Role:
+    if Marker in types:
+        return Role.MARKER
+    if Body in types and types[0] is not str:
+        return Role.OPTIONAL_BODY if type(None) in types else Role.BODY
+    if Curve in types:
+        return Role.CURVE
+    if Motion in types:
+        return Role.AMOUNT if float in types else Role.LAW
+    return Role.VALUE

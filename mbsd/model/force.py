@@ -1,5 +1,7 @@
 """Forces: their data, and the registry of kinds.
 
+Forces: their data, and the registry of kinds.
+
 A force is one scalar element or several, and the magnitude of an element is a sum of terms. An element measures a
 scalar x of two markers and acts along it, so that a positive magnitude F makes x grow:
 
@@ -18,6 +20,10 @@ scalar x of two markers and acts along it, so that a positive magnitude F makes 
 What no element can say is an interaction: a function of the relative pose and velocity of two markers in a file of
 mbsd/equations/interactions. A function of the user stands in the params as ``function``. A friction of a joint is none
 of these.
+
+A chamber behind a piston as its results are asked for: pressure, volume, and what a cycle gives.
+
+Where markers are along given poses, for potentials of forces.
 """
 
 from __future__ import annotations
@@ -26,22 +32,21 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
+import numpy as np
+
 from mbsd.base.arguments import adding
 from mbsd.base.codes import MOST_STATES, TURN
 from mbsd.base.names import Suggesting
 from mbsd.base.pickled import ByName, WithFunctions
 from mbsd.model.body import Marker
+from mbsd.model.joint import refuse_unknown_look
 from mbsd.model.laws import Motion
 from mbsd.model.laws.curve import Curve
-from mbsd.model.looks import refuse_unknown_look
 
 if TYPE_CHECKING:
-    import numpy as np
-
-    from mbsd.model.body import Marker
-    from mbsd.model.chamber import Chamber
     from mbsd.model.joint import Joint
     from mbsd.model.oil_cylinder import OilCylinder
+
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -200,7 +205,7 @@ class ForceKind(ByName):
     on_bodies: bool = False
     """Whether it acts on bodies as a whole, and its markers are no places."""
     look: str = ""
-    """What pictures of solids draw for it: one of ``LOOKS`` in mbsd/model/looks.py."""
+    """What pictures of solids draw for it: one of ``LOOKS`` in mbsd/model/joint.py."""
     motor: str = ""
     """The law by which it drives a mechanism as a motor does, if it has such a law."""
     sign: str = ""
@@ -231,7 +236,7 @@ class ForceKind(ByName):
 FORCE_KINDS: dict[str, ForceKind] = {}
 
 
-def register(kind: ForceKind) -> ForceKind:
+def register_force(kind: ForceKind) -> ForceKind:
     """Register a kind; raises ValueError if the name is taken, the example missing, states too many."""
     if not callable(kind.example):
         raise ValueError(f"{kind.name}: an example is missing; the registry test needs one")
@@ -271,3 +276,46 @@ class Force(Suggesting, WithFunctions):
     def bodies(self) -> tuple[str, str]:
         """Names of the first and second body."""
         return self.i.body.name, self.j.body.name
+
+
+@dataclass(frozen=True)
+class Chamber:
+    """Volume is area (x + shift), pressure effort / area + outside; x: what the force measures."""
+
+    area: float
+    """m^2"""
+    shift: float
+    """m"""
+    outside: float
+    """Pa"""
+    cycle: CrankCycle | None = None
+
+
+@dataclass(frozen=True)
+class CrankCycle:
+    """How the pressure repeats with a crank."""
+
+    crank: str
+    """Name of the body."""
+    fires_at: float
+    """Its angle against the cylinder's body (rad)."""
+    sense: float
+    """-1: it turns clockwise."""
+    period: float
+    """rad"""
+    displaced: float
+    """m^3"""
+    changes: tuple[float, ...]
+    """Angles after the firing at which one phase follows another (rad)."""
+    height: Callable[[np.ndarray], np.ndarray] | None
+    """Height of the gas (m) at angles after the firing, by crank and rod; None where the pressure needs none."""
+    burns: bool
+    """Whether heat is released at these heights."""
+
+
+def marker_place(marker: Marker, masses: Masses, q: np.ndarray) -> np.ndarray:
+    """(T, 2) of a marker (m) at poses q (T, 3 nb)."""
+    b = list(masses.names).index(marker.body.name)
+    x, y = marker.x - masses.com[b, 0], marker.y - masses.com[b, 1]
+    c, s = np.cos(q[:, 3 * b + 2]), np.sin(q[:, 3 * b + 2])
+    return q[:, 3 * b : 3 * b + 2] + np.stack([c * x - s * y, s * x + c * y], axis=1)

@@ -1,6 +1,25 @@
-"""Joints and drivers: their data, and the registry of kinds.
+"""Joints, drivers and contacts: their data, and the registries of kinds.
 
 A kind names its constraints in the order of its rows. It must bring an example, so that none escapes the test.
+
+Its look is what pictures of solids draw of a joint, driver, force or contact, in addition to the parts:
+
+band        a belt or chain round both wheels
+roller      a roller about marker j that is pressed on one side: a cam's
+captive     a roller or pin about marker j between two walls: of a slot, a curve, a wheel with slots
+coil        a coil spring; of what holds no potential energy a cylinder with its rod
+cylinder    a cylinder with its rod
+spiral      a flat spiral over the pin of both bodies; of what holds no potential energy nothing
+cord        a rope
+
+The first constraint of a contact is the gap g >= 0. A second one, if there is one, is the distance s that the bodies
+slide on each other. While the contact is closed, g = 0 is a row of J with the normal force N >= 0; while it sticks, s
+is one too.
+
+    open     g > 0                        nothing acts
+    slides   g = 0, N >= 0, s' != 0       friction -mu N sign(s')
+    sticks   g = 0, N >= 0, s' = 0        |T| <= mu N
+    impact   g = 0, g' < 0                velocities jump; see mbsd/dynamics/events/jumps.py
 """
 
 from __future__ import annotations
@@ -14,13 +33,11 @@ from mbsd.base.names import Suggesting
 from mbsd.base.pickled import ByName, WithFunctions
 from mbsd.model.body import Marker
 from mbsd.model.laws import Motion
-from mbsd.model.looks import refuse_unknown_look
 from mbsd.model.teeth import with_radii
 
 if TYPE_CHECKING:
     import numpy as np
 
-    from mbsd.model.body import Marker
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -80,7 +97,7 @@ class JointKind(ByName):
     """Where its force acts if that is beside marker j: on a "line" along the x axis of marker i, a "curve" of body i,
     between "discs" about both markers, or at a "place" that follows from its torque."""
     look: str = ""
-    """What pictures of solids draw for it: one of ``LOOKS`` in mbsd/model/looks.py."""
+    """What pictures of solids draw for it: one of ``LOOKS`` in mbsd/model/joint.py."""
     symmetry: Callable[[Mapping[str, Any]], int] | None = None
     """From params: the order n of the rotational symmetry of body j about marker j, where its equations do not tell
     n-th parts of a turn apart, as of a wheel that is indexed by its slots.
@@ -147,7 +164,7 @@ def cam_numbers(profile: Mapping[str, Any]) -> np.ndarray:
 KINDS: dict[str, JointKind] = {}
 
 
-def register(kind: JointKind) -> JointKind:
+def register_joint(kind: JointKind) -> JointKind:
     """Enter a kind; raises ValueError if its name is taken, a constraint unknown or the example missing."""
     unknown = [name for name in kind.constraints if name not in ROWS]
     if unknown or not kind.constraints:
@@ -191,3 +208,39 @@ class Joint(Suggesting, WithFunctions):
     def bodies(self) -> tuple[str, str]:
         """Names of the first and second body."""
         return self.i.body.name, self.j.body.name
+
+
+LOOKS = ("", "band", "roller", "captive", "coil", "cylinder", "spiral", "cord")
+
+
+def refuse_unknown_look(name: str, look: str) -> None:
+    """Raise ValueError, naming the kind ``name``, unless ``look`` is one of :data:`LOOKS`."""
+    if look not in LOOKS:
+        raise ValueError(f"{name}: look is {look!r}; it must be one of {', '.join(LOOKS[1:])}, or empty")
+
+
+@dataclass(frozen=True)
+class ContactKind(JointKind):
+    """A kind of contact."""
+
+    always_closed: bool = False
+    """The gap is no place but a way that may only grow: a one-way clutch."""
+
+    @property
+    def of_angle(self) -> bool:
+        """True if its gap is an angle (rad) and what pushes it open a torque (N m)."""
+        return SPECIALS[self.constraints[0]].unit == "rad"
+
+
+CONTACT_KINDS: dict[str, ContactKind] = {}
+
+
+def register_contact(kind: ContactKind) -> ContactKind:
+    """Register a kind; raises ValueError if its name is taken or a constraint is not of relative pose."""
+    if not kind.constraints or any(name not in SPECIALS or ROWS[name] != 1 for name in kind.constraints):
+        raise ValueError(f"{kind.name}: constraints {kind.constraints}; there are {', '.join(SPECIALS)}")
+    refuse_unknown_look(kind.name, kind.look)
+    if kind.name in CONTACT_KINDS:
+        raise ValueError(f"{kind.name}: registered twice")
+    CONTACT_KINDS[kind.name] = kind
+    return kind

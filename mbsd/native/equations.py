@@ -30,8 +30,7 @@ from mbsd.equations.assembly import tabulate_all
 from mbsd.equations.interactions.switching import SWITCHING
 from mbsd.model.mechanism import Model
 from mbsd.native.machine_code import MachineCode, functions_at
-from mbsd.native.memory import Memory, memory_of
-from mbsd.native.table import WORD, leaves, number
+from mbsd.native.memory import WORD, Memory, leaves, memory_of, number
 
 MANY_STEPS = 10**9
 

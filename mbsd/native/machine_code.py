@@ -26,7 +26,7 @@ from mbsd.compiling.lazy_kernel import COMPILE
 from mbsd.equations.interactions import call
 from mbsd.equations.loads import Loads
 from mbsd.model.joint import SPECIALS
-from mbsd.native.table import reader
+from mbsd.native.memory import reader
 
 TABLE = types.CPointer(types.int64)
 LIBRARY = {"sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "expm1", "log",

@@ -31,13 +31,10 @@ from mbsd.base.codes import AXIS, LAW_VALUE, LINE, LINEAR, POTENTIAL_TERMS, POWE
 from mbsd.equations.loads import tabulate_loads
 from mbsd.model.force import Element, Force, Term
 from mbsd.model.laws.curve import Curve
+from mbsd.results.fluids import gas_view, hydraulic_view
 from mbsd.results.force_view import ForceView
 from mbsd.results.friction import friction_view
-from mbsd.results.gas import gas_view
-from mbsd.results.hydraulics import hydraulic_view
-from mbsd.results.measured import measured
-from mbsd.results.moved import Moved
-from mbsd.results.surface import depths, foot_of
+from mbsd.results.measured import Moved, depths, foot_of, measured
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed

@@ -16,6 +16,7 @@ sol.orders(sol.shaking().force)    harmonics against the crank
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -37,12 +38,9 @@ from mbsd.results.drawer import drawer_of
 from mbsd.results.force_view import ForceView
 from mbsd.results.forces import force_view, potential_of
 from mbsd.results.friction import FrictionView, friction_view
-from mbsd.results.moved import Moved
-from mbsd.results.returned import returned
-from mbsd.results.shown_view import html_of
-from mbsd.results.vibration.crank import crank_of
-from mbsd.results.vibration.orders import Orders, orders
-from mbsd.results.vibration.shaking import Planes, PointView, Shaking, centre_of_mass, planes_of, shaking
+from mbsd.results.measured import Moved
+from mbsd.results.orders import Orders, crank_of, orders
+from mbsd.results.shaking import Planes, PointView, Shaking, centre_of_mass, planes_of, shaking
 from mbsd.results.views import (
     ContactView,
     DriverView,
@@ -51,6 +49,7 @@ from mbsd.results.views import (
     JointView,
     Stats,
     contact_view,
+    html_of,
     moved_frame,
 )
 
@@ -62,10 +61,32 @@ if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
     from mbsd.model.body import Marker
     from mbsd.pictures import Animation, Picture, View
-    from mbsd.results.mobility import Mobility
+    from mbsd.results.views import Mobility
 
 SHOWN = 40
 """Bodies: a notebook shows no larger mechanism in motion unasked."""
+
+
+RETURNED = 1e-7
+"""Largest difference between both ends of a period: m, rad and their rates, relative above 1."""
+
+
+Ends = tuple[tuple[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
+
+
+def returned(ends: Ends) -> bool:
+    """Return True if both ends have the same pose and rates (nb, 3) but for whole turns.
+
+    Rates are velocities and accelerations.
+    """
+    first, last = ends
+    for order, (start, end) in enumerate(zip(first, last, strict=True)):
+        gap = end - start
+        if order == 0:
+            gap[:, 2] -= 2 * math.pi * (gap[:, 2] / 2 / math.pi).round()
+        if np.abs(gap).max() > RETURNED * max(1.0, float(np.abs(start).max())):
+            return False
+    return True
 
 
 @dataclass(frozen=True, eq=False)

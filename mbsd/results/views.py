@@ -1,23 +1,116 @@
-"""Views of a solution: a frame, a joint, a driver and energy, (T,) arrays in SI units; its residuals.
+"""Views of a solution: a frame, a joint, a driver, energy and mobility, and how they show themselves.
 
-The motion of a frame of a body, from that of its centre of mass.
+Arrays are (T,) in SI units. A view shows a few lines in a terminal and a small table in a notebook. The motion of a
+frame of a body follows from that of its centre of mass:
 
-p = r + s,   p' = r' + omega s_perp,   p'' = r'' + alpha s_perp - omega^2 s;   s_perp = (-s_y, s_x)
+    p = r + s,   p' = r' + omega s_perp,   p'' = r'' + alpha s_perp - omega^2 s;   s_perp = (-s_y, s_x)
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+import html
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields
+from html import escape
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.base.names import Suggesting
-from mbsd.results.shown_view import ShownView
+from mbsd.base.quantity import counted
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
+
+
+UNITS = {
+    "x": "m", "y": "m", "theta": "rad", "vx": "m/s", "vy": "m/s", "omega": "rad/s",
+    "ax": "m/s^2", "ay": "m/s^2", "alpha": "rad/s^2", "fx": "N", "fy": "N", "torque": "N m",
+    "kinetic": "J", "potential": "J", "total": "J", "power": "W",
+}  # fmt: skip
+"""Units of fields that always have the same."""
+
+
+class ShownView(Suggesting):
+    """A dataclass of arrays over time that shows how each begins and ends, and how far it goes."""
+
+    other_words = MappingProxyType(
+        {
+            "angle": "theta",
+            "position": "x",
+            "velocity": "vx",
+            "speed": "omega",
+            "acceleration": "ax",
+            "force_x": "fx",
+            "force_y": "fy",
+            "moment": "torque",
+            "kinetic_energy": "kinetic",
+            "potential_energy": "potential",
+        }
+    )
+
+    def __repr__(self) -> str:
+        rows = list(self._rows())
+        outputs = next((len(array) for _, _, array in rows), 0)
+        lines = [f"<{type(self).__name__}: {outputs} outputs"]
+        for name, unit, array in rows:
+            first, least, most, last = _numbers(array)
+            lines.append(f"  {name:<13} {first:>10} .. {last:<10} least {least:>10}, most {most:>10} {unit}".rstrip())
+        return "\n".join(lines) + ">"
+
+    def _repr_html_(self) -> str:
+        """The table of a notebook: a row for each quantity."""
+        head = "".join(f"<th>{word}</th>" for word in ("", "unit", "first", "least", "most", "last"))
+        body = "".join(
+            f"<tr><th>{escape(name)}</th><td>{escape(unit)}</td>"
+            + "".join(f"<td>{number}</td>" for number in _numbers(array))
+            + "</tr>"
+            for name, unit, array in self._rows()
+        )
+        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+    def _rows(self) -> Iterator[tuple[str, str, np.ndarray]]:
+        """Name, unit and values of each array over time."""
+        turning = getattr(self, "angular", None)
+        for field in fields(self):  # type: ignore[arg-type]
+            value: Any = getattr(self, field.name)
+            if isinstance(value, np.ndarray) and value.ndim == 1 and len(value):
+                yield field.name, UNITS.get(field.name) or _driven(field.name, turning), value
+
+
+def _driven(name: str, angular: bool | None) -> str:
+    """Units of a driver's numbers, which depend on what it drives."""
+    if angular is None:
+        return ""
+    length = "rad" if angular else "m"
+    return {"value": length, "rate": f"{length}/s", "acceleration": f"{length}/s^2",
+            "effort": "N m" if angular else "N"}.get(name, "")  # fmt: skip
+
+
+def _numbers(array: np.ndarray) -> list[str]:
+    return [f"{number + 0.0:.4g}" for number in (array[0], np.nanmin(array), np.nanmax(array), array[-1])]
+
+
+LEFT_OUT = (".ax [m/s^2]", ".ay [m/s^2]", ".vx [m/s]", ".vy [m/s]")
+"""Ends of the names of results that the table does not show."""
+
+
+def html_of(name: str, about: str, columns: Mapping[str, np.ndarray], moving: str) -> str:
+    """Return HTML: a mechanism's name, text ``about`` it, its skeleton ``moving``, and its results."""
+    rows = [
+        (column, *(f"{end(values, initial=np.nan):.6g}" for end in (np.fmin.reduce, np.fmax.reduce)))
+        for column, values in columns.items()
+        if not column.endswith(LEFT_OUT)
+    ]
+    body = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in rows)
+    return (
+        f"<p><b>{html.escape(name)}</b>: {html.escape(about)}</p>{moving}"
+        "<details><summary>Least and largest values</summary>"
+        "<table><tr><th>quantity</th><th>min</th><th>max</th></tr>"
+        f"{body}</table></details>"
+    )
 
 
 @dataclass(frozen=True, repr=False)
@@ -190,3 +283,28 @@ def moved_frame(q: np.ndarray, v: np.ndarray, a: np.ndarray, local: np.ndarray, 
         ay=a[:, 1] + alpha * arm_x - omega**2 * arm_y,
         alpha=alpha,
     )
+
+
+@dataclass(frozen=True)
+class Mobility(Suggesting):
+    """Freedoms that the joints leave."""
+
+    nominal: int
+    """By counting rows."""
+    dof: int
+    """By rank."""
+    redundant_rows: int
+    """How many rows repeat others: the nominal count is wrong by this many."""
+    redundant: tuple[str, ...]
+    """Joints those rows belong to: one removable set."""
+    singular: bool
+    """The start pose has a lower rank than poses near it."""
+    free_bodies: tuple[str, ...]
+    """Bodies that can move."""
+
+    def __str__(self) -> str:
+        text = f"{counted(self.dof, 'degree')} of freedom ({self.nominal} nominal)"
+        if self.redundant:
+            rows = counted(self.redundant_rows, "redundant row")
+            text += f", {rows}, removable at {', '.join(self.redundant)}"
+        return text + (", start pose singular" if self.singular else "")

@@ -5,24 +5,18 @@ Kinds and laws are read off the registries and the signatures of their methods.
 
 from __future__ import annotations
 
-import importlib
 import json
-import pkgutil
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-import mbsd.model.contacts
-import mbsd.model.drivers
-import mbsd.model.forces
-import mbsd.model.joints
+import mbsd.model.building  # noqa: F401 (it registers all kinds)
 from mbsd.base.files import write_whole
-from mbsd.model.contact import CONTACT_KINDS
+from mbsd.model.change import Role, arguments
 from mbsd.model.cylinders.cycle import GasCycle
 from mbsd.model.force import FORCE_KINDS
-from mbsd.model.joint import KINDS
-from mbsd.model.roles import Role, arguments
+from mbsd.model.joint import CONTACT_KINDS, KINDS
 from mbsd.saving.document import SCHEMA, SCHEMA_VERSION
 from mbsd.saving.laws import CYCLES, loadable_laws
 
@@ -43,7 +37,6 @@ TYPES: dict[Any, dict[str, Any]] = {
 
 def schema() -> dict[str, Any]:
     """The JSON Schema of a saved model."""
-    _register_all()
     along = {"z": ({"type": ["number", "null"]}, False)}
     marker = _object({"body": {"type": "string"}, "x": NUMBER, "y": NUMBER, "angle": NUMBER}, along)
     body = _object(  # com and inertia of a bar that is a uniform rod are null
@@ -132,13 +125,6 @@ def _force(name: str) -> dict[str, Any]:
     amounts = {key: (NUMBER, False) for key in laws if key in params}
     fixed = {"kind": {"const": name}, "i": reference, "j": reference}
     return _object(fixed | {"params": _object({}, params | amounts), "laws": _object({}, laws)})
-
-
-def _register_all() -> None:
-    """Import the file of every kind, which registers it."""
-    for package in (mbsd.model.joints, mbsd.model.drivers, mbsd.model.forces, mbsd.model.contacts):
-        for module in pkgutil.iter_modules(package.__path__):
-            importlib.import_module(f"{package.__name__}.{module.name}")
 
 
 def _parameters(function: Callable[..., Any]) -> dict[str, tuple[dict[str, Any], bool]]:

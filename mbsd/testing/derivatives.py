@@ -14,7 +14,7 @@ from mbsd.derivatives.numbers.variants import FOURTH
 from mbsd.derivatives.sensitivities import moves_freely, sensitivities
 from mbsd.mechanism import Mechanism
 from mbsd.numbers.names import Number, number_named, with_values
-from mbsd.testing.differences import compare
+from mbsd.testing.kinds import compare
 
 STEP = 1e-3
 """Step of the differences, as part of the size of a number; see mbsd/derivatives/numbers/number_steps.py."""

@@ -22,8 +22,7 @@ from mbsd.equations.loads import tabulate_loads
 from mbsd.mechanism import Mechanism
 from mbsd.model.force import Element, Force, ForceKind
 from mbsd.results.forces import potential_of
-from mbsd.testing.differences import compare, coordinate
-from mbsd.testing.kinds import check_kept
+from mbsd.testing.kinds import check_kept, compare, coordinate
 
 SEEDS = range(3)
 STEP = 1e-6

@@ -14,8 +14,7 @@ from mbsd.arrays.packing import Packed, pack
 from mbsd.equations.assembly import tabulate
 from mbsd.mechanism import Mechanism
 from mbsd.model.joint import ROWS, Joint, JointKind
-from mbsd.testing.differences import compare, coordinate
-from mbsd.testing.kinds import check_kept
+from mbsd.testing.kinds import check_kept, compare, coordinate
 from mbsd.testing.velocity_rows import fill_nu
 
 SEEDS = range(5)

@@ -1,54 +1,71 @@
-"""All kinds that are registered: those of mbsd, whose files are imported here, and those of the user."""
+"""All kinds that are registered, those of mbsd and those of the user, and comparisons of arrays."""
 
 from __future__ import annotations
 
 import importlib
 import pkgutil
-from types import ModuleType
+from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 import mbsd.dynamics.integrators
-import mbsd.model.contacts
-import mbsd.model.drivers
-import mbsd.model.forces
-import mbsd.model.joints
 from mbsd.base.errors import ModelError
 from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
 from mbsd.mechanism import Mechanism
 from mbsd.model.change import given
-from mbsd.model.contact import CONTACT_KINDS, ContactKind
 from mbsd.model.force import FORCE_KINDS, Force, ForceKind
-from mbsd.model.joint import KINDS, Joint, JointKind
+from mbsd.model.joint import CONTACT_KINDS, KINDS, ContactKind, Joint, JointKind
 from mbsd.saving.document import build, document
 
 
-def _load(package: ModuleType) -> None:
-    for module in pkgutil.iter_modules(package.__path__):
-        importlib.import_module(f"{package.__name__}.{module.name}")
+def compare(
+    what: str,
+    given: np.ndarray,
+    expected: np.ndarray,
+    tolerance: float | np.ndarray,
+    place: Callable[..., str] = lambda *index: f"at {index}",
+) -> None:
+    """Raise AssertionError if ``given`` is too far from ``expected``, or is no number.
+
+    ``place`` puts the index of the worst element into words.
+    """
+    given, expected = np.broadcast_arrays(given, expected)
+    distance = np.abs(given - expected)
+    excess = np.where(np.isfinite(distance), distance - tolerance, np.inf)
+    if not excess.size or excess.max() <= 0.0:
+        return
+    worst = tuple(int(k) for k in np.unravel_index(int(excess.argmax()), excess.shape))
+    raise AssertionError(
+        f"{what}, {place(*worst)}: {given[worst]:.9g} instead of {expected[worst]:.9g} "
+        f"({np.count_nonzero(excess > 0.0)} of {excess.size} numbers differ)"
+    )
+
+
+def coordinate(bodies: list[str], column: int) -> str:
+    """The name of a coordinate by its number, ground's three included."""
+    return f"{('x', 'y', 'theta')[column % 3]} of '{bodies[column // 3]}'"
 
 
 def joint_kinds() -> list[JointKind]:
     """Kinds of joints and drivers."""
-    _load(mbsd.model.joints)
-    _load(mbsd.model.drivers)
     return list(KINDS.values())
 
 
 def force_kinds() -> list[ForceKind]:
     """Kinds of forces."""
-    _load(mbsd.model.forces)
     return list(FORCE_KINDS.values())
 
 
 def contact_kinds() -> list[ContactKind]:
     """Kinds of rigid contacts."""
-    _load(mbsd.model.contacts)
     return list(CONTACT_KINDS.values())
 
 
 def integrators() -> list[Integrator]:
     """Methods of simulate(), those whose package is not installed included."""
-    _load(mbsd.dynamics.integrators)
+    for module in pkgutil.iter_modules(mbsd.dynamics.integrators.__path__):
+        importlib.import_module(f"mbsd.dynamics.integrators.{module.name}")
     return list(INTEGRATORS.values())
 
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mbsd import Mechanism
-from mbsd.analyses.finding import Finding
+from mbsd.analyses.findings import Finding
 from tests.kinematics.test_change_points import LINKAGES, linkage, slider_crank
 
 

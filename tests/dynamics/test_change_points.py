@@ -97,3 +97,22 @@ def test_many_simulations_away_from_change_points_stay_together() -> None:
     m = parallelogram(False)
     many = m.simulate_many(0.1, vary={"coupler": {"mass": [0.5, 1.0]}}, measure={"f": largest("C.fx")}, steps=36)
     assert many.alone == [None, None]
+
+
+@pytest.mark.parametrize("extra", [[0.0, 1e-3], [1e-3, 0.0], [0.0, 0.0, 1e-3], [0.0, 1e-2, 0.0, 0.0]])
+def test_loops_in_a_row_pass_their_change_points_beside_one_that_is_not_exact(extra: list[float]) -> None:
+    m, length = Mechanism("row"), 1.3
+    rods = [m.bar(f"rod{k}", length, mass=1.0) for k in range(len(extra) + 1)]
+    for k, rod in enumerate(rods):
+        m.revolute(f"foot{k}", m.ground.at(k * length, 0.0), rod.start)
+    for k, (left, right, more) in enumerate(zip(rods, rods[1:], extra, strict=False)):
+        deck = m.bar(f"deck{k}", length, mass=1.0)
+        m.revolute(f"left{k}", left.end, deck.start)
+        m.revolute(f"right{k}", deck.at(length + more, 0.0), right.end)
+    starts = {name: 113.0 if name.startswith("rod") else 0.0 for name in m.bodies if name != "ground"}
+    m.start_near(**starts)
+    m.start_moving(rod0=0.48)
+    sol = m.simulate(1.34, steps=20, tolerance=1e-9)
+    assert np.ptp(sol.energy.total) < 1e-8 * sol.energy.kinetic.max()
+    finer = m.simulate(1.34, steps=20, tolerance=1e-11)
+    assert np.abs(sol.q - finer.q).max() < 1e-8

@@ -10,7 +10,7 @@ import pytest
 
 from mbsd import AssemblyError, Mechanism, MobilityError, ModelError, SimulationError, constant_rate, polynomial
 from mbsd.measures import final
-from mbsd.model.adding.restitution import MODELS
+from mbsd.model.entries import MODELS
 from mbsd.results.force_view import ForceView
 from tools.models.clearance_slider_crank import CRANK, RADIUS, ROD, TURN, reference, slider_crank
 

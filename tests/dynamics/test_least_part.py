@@ -8,8 +8,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbsd.dynamics.events.bounds import MOST_PUSH
-from mbsd.dynamics.events.laws.least_part import FORCE, OWN, PULLED, RAW, UNIT, least_part, together_of
+from mbsd.dynamics.events.laws.least_part import FORCE, MOST_PUSH, OWN, PULLED, RAW, UNIT, least_part, together_of
 
 MOST, LESS = 1e4, 1e-3
 """Parts above which none is looked for, and by how much less must not hold."""

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from mbsd import Mechanism
 from mbsd.compiling.jit import COMPILED
 from mbsd.dynamics.batch import loop
-from mbsd.dynamics.batch.early import MOST_PASSED
+from mbsd.dynamics.batch.loop import MOST_PASSED
 from mbsd.measures import Measure, final, first, integral, samples
 from tests.dynamics.many_models import door, pendulum
 from tools.models.stops import barrier

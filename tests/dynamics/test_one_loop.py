@@ -13,7 +13,7 @@ from mbsd import Mechanism
 from mbsd.base.errors import SimulationError
 from mbsd.compiling.jit import kernel
 from mbsd.dynamics.events.refusals import taking_turns
-from mbsd.dynamics.events.sticking.giving_way import solve_least
+from mbsd.dynamics.events.sticking.deciding import solve_least
 from mbsd.model.event import Happening
 
 

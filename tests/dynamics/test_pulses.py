@@ -13,7 +13,7 @@ from mbsd import Mechanism, ModelError, cycloidal, function, table
 from mbsd.arrays.laws import pack_laws
 from mbsd.base.errors import ModelWarning
 from mbsd.equations.laws import tabulate_law
-from mbsd.model.laws.fitting.look import FORCE_LOOKS, LOOKS
+from mbsd.model.laws.fitting.sampling import FORCE_LOOKS, LOOKS
 
 MASS = 2.0
 

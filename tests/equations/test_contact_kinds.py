@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mbsd import Mechanism, ModelError
-from mbsd.model.contact import CONTACT_KINDS, ContactKind
+from mbsd.model.joint import CONTACT_KINDS, ContactKind
 from mbsd.testing import check_joint, contact_kinds
 
 

@@ -9,7 +9,7 @@ import pytest
 from scipy.optimize import brentq
 
 from mbsd import Mechanism, ModelError, Solution, curve, harmonic
-from mbsd.model.adding.restitution import MODELS
+from mbsd.model.entries import MODELS
 
 G = 9.80665
 PUBLISHED = {"hunt_crossley": 0.02, "lankarani_nikravesh": 0.02, "flores": 0.05}

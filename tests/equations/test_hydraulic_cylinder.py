@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from mbsd import Mechanism, ModelError, Solution, constant_rate
 from mbsd.base.errors import ModelWarning
 from mbsd.model.oil_cylinder import LEAST, OilCylinder
-from mbsd.results.hydraulics import HydraulicView
+from mbsd.results.fluids import HydraulicView
 
 BORE, ROD, STROKE, RETRACTED, SUPPLY = 0.1, 0.06, 1.0, 0.6, 20e6
 FLOW, BULK = 1e-3, 1.4e9

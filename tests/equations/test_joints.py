@@ -2,27 +2,22 @@
 
 from __future__ import annotations
 
-import pkgutil
-
 import numpy as np
 import pytest
 
-import mbsd.model.drivers
-import mbsd.model.joints
 import mbsd.testing.joints
 from mbsd import Mechanism, harmonic
 from mbsd.arrays.packing import pack
 from mbsd.equations.assembly import tabulate, tabulate_all, tabulate_some
-from mbsd.model.adding.joints import join
 from mbsd.model.body import Marker
-from mbsd.model.joint import KINDS, JointKind, register
+from mbsd.model.entries import join
+from mbsd.model.joint import KINDS, JointKind, register_joint
 from mbsd.testing import check_joint, joint_kinds
 
 
-def test_each_file_registers_its_kind() -> None:
-    files = {m.name for m in pkgutil.iter_modules(mbsd.model.joints.__path__)}
-    files |= {f"drive_{m.name}" for m in pkgutil.iter_modules(mbsd.model.drivers.__path__)}
-    assert files == {kind.name for kind in joint_kinds()}
+def test_each_kind_is_a_method() -> None:
+    for kind in joint_kinds():
+        assert callable(getattr(Mechanism, kind.name)), kind.name
 
 
 @pytest.mark.parametrize("kind", joint_kinds(), ids=lambda kind: kind.name)
@@ -88,7 +83,7 @@ def test_a_driver_whose_rate_is_wrong_is_found(monkeypatch: pytest.MonkeyPatch) 
 def test_a_kind_that_loses_its_arguments_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """Its params have another name than the argument of the function that adds one."""
     monkeypatch.setattr("mbsd.model.joint.KINDS", dict(KINDS))
-    kind = register(JointKind("arm", ("distance",), example=lambda m, i, j: arm(m, "example", i, j, 0.7)))
+    kind = register_joint(JointKind("arm", ("distance",), example=lambda m, i, j: arm(m, "example", i, j, 0.7)))
 
     @kind.adds
     def arm(m, name: str, i: Marker, j: Marker, reach: float):
@@ -96,18 +91,18 @@ def test_a_kind_that_loses_its_arguments_is_found(monkeypatch: pytest.MonkeyPatc
 
     with pytest.raises(AssertionError, match=r"arm: params hold 'length', with which change.. fails: .*'length'"):
         check_joint(kind)
-    other = register(JointKind("other", ("distance",), example=KINDS["revolute"].example))
+    other = register_joint(JointKind("other", ("distance",), example=KINDS["revolute"].example))
     with pytest.raises(AssertionError, match="other: its example must add one 'other' and nothing else"):
         check_joint(other)
-    bare = register(JointKind("bare", ("point",), example=lambda m, i, j: join(m, bare, "example", i, j)))
+    bare = register_joint(JointKind("bare", ("point",), example=lambda m, i, j: join(m, bare, "example", i, j)))
     with pytest.raises(AssertionError, match=r"bare: decorate the function that adds one with @BARE.adds"):
         check_joint(bare)
 
 
 def test_a_kind_without_an_example_is_refused() -> None:
     with pytest.raises(ValueError, match="example is missing"):
-        register(JointKind("bare", ("point",), example=None))  # pyright: ignore[reportArgumentType]
+        register_joint(JointKind("bare", ("point",), example=None))  # pyright: ignore[reportArgumentType]
     with pytest.raises(ValueError, match="constraints"):
-        register(JointKind("odd", ("nothing",), example=lambda m, i, j: None))
+        register_joint(JointKind("odd", ("nothing",), example=lambda m, i, j: None))
     with pytest.raises(ValueError, match="registered twice"):
-        register(KINDS["revolute"])
+        register_joint(KINDS["revolute"])

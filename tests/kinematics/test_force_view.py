@@ -11,7 +11,7 @@ from mbsd import Mechanism, ModelError, constant_rate, harmonic
 from mbsd.arrays.reactions import marker_places
 from mbsd.model.force import ForceKind
 from mbsd.results.forces import force_view
-from mbsd.results.moved import Moved
+from mbsd.results.measured import Moved
 from mbsd.results.solution import Solution
 from mbsd.testing import force_kinds
 from mbsd.testing.forces import example

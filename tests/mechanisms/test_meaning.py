@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mbsd.dependencies.meaning import looks_at_itself, meaning
+from mbsd.dependencies.inputs import looks_at_itself, meaning
 from mechanisms.stages import shot as shot_stage
 from mechanisms.stages.solve import stage as solve_stage
 from shared.stage.paths import Out

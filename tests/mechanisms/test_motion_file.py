@@ -273,8 +273,8 @@ def test_files_of_version_1_are_read(tmp_path: Path) -> None:
 
 def _examples() -> dict[str, Mechanism]:
     """A small simulation with an example of each kind of force and contact, by name."""
-    from mbsd.model.contact import CONTACT_KINDS
     from mbsd.model.force import FORCE_KINDS
+    from mbsd.model.joint import CONTACT_KINDS
 
     examples = {}
     for kind in (*FORCE_KINDS.values(), *CONTACT_KINDS.values()):

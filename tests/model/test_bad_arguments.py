@@ -6,11 +6,9 @@ them, so that a new kind is tried without a word here.
 
 from __future__ import annotations
 
-import importlib
 import inspect
 import itertools
 import math
-import pkgutil
 from collections.abc import Callable, Iterator
 from functools import cache
 from typing import Any
@@ -18,9 +16,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-import mbsd.model.contacts
-import mbsd.model.forces
-import mbsd.model.joints
 from mbsd import (
     Marker,
     Mechanism,
@@ -38,15 +33,10 @@ from mbsd import (
     table,
 )
 from mbsd.cams import Lift, cam_from, flat_cam, oscillating_flat_cam, oscillating_roller_cam, roller_cam
-from mbsd.model.contact import CONTACT_KINDS
 from mbsd.model.force import FORCE_KINDS
-from mbsd.model.joint import KINDS
+from mbsd.model.joint import CONTACT_KINDS, KINDS
 from mbsd.model.mechanism import connections
 from tools.models.wrong_values import NEVER, ODD
-
-for package in (mbsd.model.joints, mbsd.model.forces, mbsd.model.contacts):
-    for module in pkgutil.iter_modules(package.__path__):
-        importlib.import_module(f"{package.__name__}.{module.name}")
 
 
 class _Recorder:

@@ -2,28 +2,22 @@
 
 from __future__ import annotations
 
-import importlib
 import itertools
 import math
-import pkgutil
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 
-import mbsd.model.contacts
 from mbsd import Mechanism, ModelError, constant_rate, curve, harmonic, pressure_table, two_stroke
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
 from mbsd.model import plane_curves
-from mbsd.model.contact import CONTACT_KINDS
-from mbsd.model.roles import Role, arguments
+from mbsd.model.change import Role, arguments
+from mbsd.model.joint import CONTACT_KINDS
 from mbsd.saving.document import build, document
 from mbsd.testing import force_kinds, joint_kinds
-
-for module in pkgutil.iter_modules(mbsd.model.contacts.__path__):
-    importlib.import_module(f"mbsd.model.contacts.{module.name}")
 
 KINDS = [*joint_kinds(), *force_kinds(), *CONTACT_KINDS.values()]
 WAVY = [(-6, -3), (-4, -2.6), (-2, -2), (0, -2.2), (2, -2.5), (4, -1.9), (6, -1.9)]

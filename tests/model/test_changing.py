@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-import importlib
 import math
-import pkgutil
 
 import numpy as np
 import pytest
 from numba.core import event
 
-import mbsd.model.contacts
+import mbsd
 from mbsd import Mechanism, ModelError, constant_rate, harmonic
-from mbsd.model.contact import CONTACT_KINDS, ContactKind
 from mbsd.model.force import ForceKind
-from mbsd.model.joint import JointKind
+from mbsd.model.joint import CONTACT_KINDS, ContactKind, JointKind
 from mbsd.testing import force_kinds, joint_kinds
-
-for module in pkgutil.iter_modules(mbsd.model.contacts.__path__):
-    importlib.import_module(f"mbsd.model.contacts.{module.name}")
 
 
 def oscillator(stiffness: float = 100.0) -> Mechanism:

@@ -9,8 +9,8 @@ from mbsd import Body, Curve, Mechanism
 from mbsd import Marker as Place
 from mbsd.base.arguments import types_of
 from mbsd.extend import Amount, ForceKind, Law, Model, add_force
+from mbsd.model.change import Role, arguments
 from mbsd.model.force import FORCE_KINDS
-from mbsd.model.roles import Role, arguments
 from mbsd.saving.document import build, document
 
 

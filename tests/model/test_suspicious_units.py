@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, ModelWarning, constant_rate, cycloidal, harmonic
-from mbsd.analyses.finding import Finding
+from mbsd.analyses.findings import Finding
 from mbsd.saving.document import build, document
 from shared.stage.paths import mechanism_names
 from tools.models import random_linkages

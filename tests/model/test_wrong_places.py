@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from mbsd import Mechanism, ModelError, constant_rate, curve
-from mbsd.model.contact import CONTACT_KINDS
-from mbsd.model.roles import Role, arguments
+from mbsd.model.change import Role, arguments
+from mbsd.model.joint import CONTACT_KINDS
 from mbsd.testing import force_kinds, joint_kinds
 
 

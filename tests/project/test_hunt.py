@@ -17,9 +17,8 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, constant_rate, function, table
-from mbsd.model.contact import CONTACT_KINDS
 from mbsd.model.force import FORCE_KINDS
-from mbsd.model.joint import KINDS
+from mbsd.model.joint import CONTACT_KINDS, KINDS
 from mbsd.model.laws.examples import EXAMPLES
 from tools.hunt import case, pool
 from tools.hunt.__main__ import hunt

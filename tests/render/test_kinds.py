@@ -14,10 +14,9 @@ from matplotlib.figure import Figure
 
 from mbsd import Mechanism, constant_rate
 from mbsd.drawing.animation.arrows import reaction_arrows
-from mbsd.model.adding.joints import join
-from mbsd.model.contact import CONTACT_KINDS
+from mbsd.model.entries import join
 from mbsd.model.force import FORCE_KINDS
-from mbsd.model.joint import KINDS, JointKind
+from mbsd.model.joint import CONTACT_KINDS, KINDS, JointKind
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.solve.motion_file import to_motion
 from mechanisms.stages.solve.skeleton_file import moving_of

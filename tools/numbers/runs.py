@@ -15,18 +15,14 @@ from typing import Any
 import numpy as np
 
 import mbsd.dynamics.integrators
-import mbsd.model.drivers
-import mbsd.model.forces
-import mbsd.model.joints
 from benchmarks.dynamics import mbsd_code
 from benchmarks.dynamics.cases import case
 from mbsd import Mechanism, constant_rate, harmonic
 from mbsd.dynamics.integrators.kind import INTEGRATORS
 from mbsd.kinematics.march import kinematics_at
 from mbsd.kinematics.prepare import prepare
-from mbsd.model.contact import CONTACT_KINDS
 from mbsd.model.force import FORCE_KINDS
-from mbsd.model.joint import KINDS
+from mbsd.model.joint import CONTACT_KINDS, KINDS
 from tools.documents.integrators.mechanisms import four_bar, pendulum
 
 Run = Callable[[], Any]
@@ -37,9 +33,8 @@ INTERVAL = 0.3
 
 def runs() -> Iterator[tuple[str, Run]]:
     """All, by name."""
-    for package in (mbsd.model.forces, mbsd.dynamics.integrators, mbsd.model.joints, mbsd.model.drivers):
-        for module in pkgutil.iter_modules(package.__path__):
-            importlib.import_module(f"{package.__name__}.{module.name}")
+    for module in pkgutil.iter_modules(mbsd.dynamics.integrators.__path__):
+        importlib.import_module(f"mbsd.dynamics.integrators.{module.name}")
     yield from _kinds()
     yield from _integrators()
     yield from _formulations()

@@ -194,7 +194,8 @@ class _Piece:
         for out, part in zip(parts, made[2:], strict=True):
             combine(y, part, out)
         q, v, _, lam = (part[:, -1] for part in parts)
-        return Carried(Tangents(*(part[:, :asked] for part in parts)), q, v, lam, line.errors, self.off)
+        errors = line.errors_of(self.along.t[self.asked])
+        return Carried(Tangents(*(part[:, :asked] for part in parts)), q, v, lam, errors, self.off)
 
     def at_all(self, y: np.ndarray) -> Tangents:
         """Tangents at all times, from s and s' there: y (T, 2 f, P)."""

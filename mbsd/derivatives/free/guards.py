@@ -25,9 +25,8 @@ from mbsd.derivatives.driven.tangents import along_direction, per_scales
 from mbsd.derivatives.numbers.terms import Along, Terms
 from mbsd.derivatives.numbers.variants import SECOND, Variant, Variants
 from mbsd.dynamics.events.moment import Moment
-from mbsd.model.contact import ContactKind
 from mbsd.model.event import Happening
-from mbsd.model.joint import Joint
+from mbsd.model.joint import ContactKind, Joint
 
 GAP, RATE, SLIP, USER = "gap", "rate", "slip", "user"
 REACH = 1e-5
@@ -77,22 +76,22 @@ def guards_of(packed: Packed, along: Along, row: int, struck: Sequence[str]) -> 
     others: list[Guard] = []
     states = {k: (_state(packed, along, k, row), _state(packed, along, k, row + 1)) for k, _ in contacts_of(packed)}
     beside = tuple(
-        (k, float(np.sign(along.lam[row + 1, packed.first_row[k] + 1])))
+        (k, float(np.sign(along.lam[row + 1, packed.rows_of(k)[1]])))
         for k, (before, after) in states.items()
         if before == RESTS and after in SLIDING
     )
     for k, joint in contacts_of(packed):
         before, after = states[k]
-        gap, way = int(packed.first_row[k]), int(packed.first_row[k]) + 1
+        gap = packed.rows_of(k).start
         if before == OPEN and (joint.name in struck or after != OPEN):
             if joint.kind.always_closed:
                 others.append(Guard(RATE, joint.name, gap, k))
             else:
                 met.append(Guard(GAP, joint.name, gap, k))
         elif before in SLIDING and after in {*SLIDING, STICKS} - {before}:
-            others.append(Guard(RATE, joint.name, way, k))
+            others.append(Guard(RATE, joint.name, gap + 1, k))
         elif before == STICKS and after in SLIDING:
-            others.append(Guard(SLIP, joint.name, way, k, beside))
+            others.append(Guard(SLIP, joint.name, gap + 1, k, beside))
     return met or others
 
 
@@ -109,10 +108,11 @@ def contacts_of(packed: Packed) -> list[tuple[int, Joint]]:
 def _state(packed: Packed, along: Along, k: int, row: int) -> str:
     """Return what contact ``k`` does at a row: it rests where it needs no friction."""
     assert along.held is not None
-    gap, end = int(packed.first_row[k]), int(packed.first_row[k + 1])
+    rows = packed.rows_of(k)
+    gap = rows.start
     if not along.held[row, gap]:
         return OPEN
-    if end == gap + 1:
+    if len(rows) == 1:
         return RESTS
     if along.held[row, gap + 1]:
         return STICKS
@@ -128,8 +128,9 @@ def ways_of(packed: Packed, along: Along) -> tuple[list[tuple[int, int]], list[i
     sliding: list[tuple[int, int]] = []
     shared: list[int] = []
     for k, joint in contacts_of(packed):
-        gap, end = int(packed.first_row[k]), int(packed.first_row[k + 1])
-        if end == gap + 1 or not along.held[0, gap] or along.held[0, gap + 1] or not along.lam[:, gap + 1].any():
+        rows = packed.rows_of(k)
+        gap = rows.start
+        if len(rows) == 1 or not along.held[0, gap] or along.held[0, gap + 1] or not along.lam[:, gap + 1].any():
             continue
         push, normal = np.abs(along.lam[:, gap + 1]), np.abs(along.lam[:, gap])
         if np.abs(push - joint.params["friction"] * normal).max() <= SLIDES * normal.max():
@@ -318,7 +319,7 @@ def refuse_contact_at_start(
     assert here.held is not None
     rates, fastest = None, 1.0 / per_scales(terms, along)[1]
     for k, joint in contacts_of(packed):
-        gap = int(packed.first_row[k])
+        gap = packed.rows_of(k).start
         if not here.held[0, gap]:
             continue
         moved = q[:, 3:] @ packed.spread(terms.rows(here)[2])[0, gap] + _by_numbers(every, here, "position", gap)

@@ -145,7 +145,7 @@ class Jump:
             return None
         names = [joint.name for joint in packed.joints]
         joint = names.index(self.impacts[0])
-        params, row = packed.joints[joint].params, int(packed.first_row[joint])
+        params, row = packed.joints[joint].params, packed.rows_of(joint).start
         if params.get("friction", 0.0):
             return None
         here = self.along.take(slice(self.before, self.before + 2))

@@ -66,6 +66,13 @@ class Carried:
         grown = weights[:, None] @ rates.reshape(*weights.shape, -1)
         return self.y[NODES * step] + grown.reshape(len(times), *self.y.shape[1:])
 
+    def errors_of(self, times: np.ndarray) -> np.ndarray:
+        """Return ``errors`` of y at times (R,) (s): steps without one of them inside leave out nothing there."""
+        edges = self.t[::NODES]
+        first = np.searchsorted(times, edges[:-1], side="right")
+        inside = np.searchsorted(times, edges[1:], side="left") > first
+        return np.where(inside[:, None], self.errors, self.errors * [1.0, 0.0])
+
 
 def carried(t: np.ndarray, a: np.ndarray, b: np.ndarray, begun: np.ndarray, slight: np.ndarray) -> Carried:
     """y at nodes t (8 d + 1,) (s) from ``begun`` (2 f, c), and beyond.

@@ -109,15 +109,15 @@ class NearNumbers:
                 return None
             com = _slope(packed.com, first.com, away)
             moved = not alike(packed.system, first.system, PLACES)
-            masses = alike(packed.system, first.system, MASSES)
             if own.turns.any():
                 offset = packed.system.angle_offset + own.turns
                 packed = replace(packed, system=packed.system.changed(angle_offset=offset))
+            masses = alike(packed.system, first.system, MASSES)
             begun = self.starts.of(m, packed, away, moved or bool(com.any()), not masses)
             traces = _slopes_of_traces(m, own, away)
             if begun is None or traces is None:
                 return None
-            loads = self._loads(m, packed, away, not com.any())
+            loads = self._loads(m, packed, away)
             if loads is None:
                 return None
             system, base = packed.system, first.system
@@ -133,16 +133,22 @@ class NearNumbers:
             m is saved.m and all(unchanged(table, saved) for table in (m.joints, m.drivers, m.forces, m.traces))
         )
 
-    def _loads(self, m: Model, packed: Packed, away: float, same_com: bool) -> dict[str, np.ndarray] | None:
+    def _loads(self, m: Model, packed: Packed, away: float) -> dict[str, np.ndarray] | None:
         """Slopes of numbers of forces; None where forces are made otherwise."""
-        base = self.loads
-        plain = not (len(base.interaction) or len(base.user) or len(base.friction))
-        if not packed.forces or (plain and same_com and unchanged(m.forces, self.variation.saved)):
+        base, first = self.loads, self.variation.first
+        if not packed.forces:
             return {}
+        plain = not (len(base.interaction) or len(base.user) or len(base.friction))
+        if plain and unchanged(m.forces, self.variation.saved):
+            at, (own, before) = packed.force_markers.ravel(), (packed.system, first.system)
+            pairs = (own.marker_arm, before.marker_arm), (own.marker_axis, before.marker_axis)
+            if all(a is b or a[at].tobytes() == b[at].tobytes() for a, b in pairs):
+                return {}
         loads = pack_loads(packed)
         if not alike(loads, base, TABLES_OF_LOADS):
             return None
-        slopes = {name: _slope(getattr(loads, name), getattr(base, name), away) for name in NUMBERS_OF_LOADS}
+        names = [name for name in NUMBERS_OF_LOADS if getattr(base, name).size]
+        slopes = {name: _slope(getattr(loads, name), getattr(base, name), away) for name in names}
         return {name: slope for name, slope in slopes.items() if slope.any()}
 
 

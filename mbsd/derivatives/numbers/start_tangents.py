@@ -40,13 +40,18 @@ class StartTangents:
         self.starts, self.velocities = dict(m.starts), dict(m.velocities)
         self.still = not m.velocities and not self.nu.any()
         """Whether nothing moves at the start, whatever the numbers are."""
+        self.placed = any(velocity.place is not None for velocity in m.velocities.values())
+        """Whether the velocity of a place is given, which turns with its body."""
         self.speed = self.v.reshape(-1, 3)[packed.system.row_body].reshape(-1, 6)
         """(m, 6) velocities of both bodies of each row."""
         self.phi, self.rate = self._evaluated(packed, self.q)
+        self.given = np.zeros(0)
         jac = packed.jacobian()
-        self.values = np.array([value for _, value in given_coordinates(m, packed)])
-        self.wanted = np.array([c for c, _ in given_coordinates(m, packed)], np.int64)
+        given = given_coordinates(m, packed)
+        self.values = np.array([value for _, value in given])
+        self.wanted = np.array([c for c, _ in given], np.int64)
         scale, size = packed.row_scale()[:, None], packed.column_scale()
+        self.size = size
         units = np.eye(packed.coordinates)[self.wanted - 3]
         kept, self.held = held_values(jac * scale * size, units, places_of(self.wanted.tolist()))
         self.places = self._inverse(jac, kept, self.held @ units)
@@ -76,25 +81,31 @@ class StartTangents:
         if not turned and m.velocities == self.velocities and (self.still or not heavier or self.speeds is not None):
             return self.none
         q, v = np.zeros((2, len(self.q)))
+        rate = self.rate
         if turned:
             if self.places is None:
                 return None
-            residual_and_jacobian(packed.system, self.q, self.drive, packed.ws)
-            phi = packed.ws.phi
+            phi, rate = self._evaluated(packed, self.q)
             values = np.array([value for _, value in given_coordinates(m, packed)])
             q[3:] = self.places @ np.concatenate([(self.phi - phi) / away, self.held @ (values - self.values) / away])
         if self.still and not m.velocities:
             return q, v
         if self.speeds is None:  # the least kinetic energy decides as well
             return None
-        rate, given = self._evaluated(packed, self.q)[1], self._left(m, packed, self.q)
-        rate, given = (rate - self.rate) / away, (given - self.given) / away
-        far = float(np.abs(q[3:] / self.packed.column_scale()).max(initial=0.0))
+        if not turned:
+            _, rate = self._evaluated(packed, self.q)
+        rate = (rate - self.rate) / away
+        given = np.zeros(len(self.given))
+        if self.placed or m.velocities != self.velocities:
+            given = (self._left(m, packed, self.q) - self.given) / away
+        far = float(np.abs(q[3:] / self.size).max(initial=0.0))
         if far > 0.0:
             step = ALONG / far
-            (_, fast), (_, slow) = (self._evaluated(self.packed, self.q + sign * step * q) for sign in (1.0, -1.0))
-            more, less = (self._left(self.m, self.packed, self.q + sign * step * q) for sign in (1.0, -1.0))
-            rate, given = rate + (fast - slow) / (2.0 * step), given + (more - less) / (2.0 * step)
+            ahead, behind = self.q + step * q, self.q - step * q
+            rate += (self._evaluated(self.packed, ahead)[1] - self._evaluated(self.packed, behind)[1]) / (2.0 * step)
+            if self.placed:
+                more, less = (self._left(self.m, self.packed, there) for there in (ahead, behind))
+                given = given + (more - less) / (2.0 * step)
         v[3:] = self.speeds @ np.concatenate([-rate, self.kept @ given])
         return q, v
 

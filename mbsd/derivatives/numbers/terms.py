@@ -17,6 +17,7 @@ import numpy as np
 from mbsd.arrays.approaches import approached_along
 from mbsd.arrays.curve_branches import tabulate_along
 from mbsd.arrays.friction_along import friction_along
+from mbsd.arrays.inertias import inertia_of, weight_of
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
@@ -198,10 +199,7 @@ def terms_of(
 
     Without ``loads`` forces are left out.
     """
-    system = packed.system
-    inertia = np.stack([system.mass, system.mass, system.inertia], axis=1).ravel()
-    weight = np.zeros((len(system.mass), 3))
-    weight[:, :2] = system.mass[:, None] * system.gravity
+    inertia, weight = inertia_of(packed), weight_of(packed)
     if not packed.forces or not loads:
-        return Terms(packed, None, None, inertia, weight.ravel())
-    return Terms(packed, laws or compiled_laws(packed, *span), known or pack_loads(packed), inertia, weight.ravel())
+        return Terms(packed, None, None, inertia, weight)
+    return Terms(packed, laws or compiled_laws(packed, *span), known or pack_loads(packed), inertia, weight)

@@ -38,6 +38,9 @@ from mbsd.numbers.saved import SavedModel
 
 STEP, TINY = 1e-4, 1e-5
 """Steps of a number, as parts of its size: of fourth and of second order."""
+FAR, ALLOWED = 1e-5, 4.0
+"""A variant's motion is this far from the motion itself, in sizes and rad, where its usual step takes it farther than
+so many times this: near a toggle, and after long, a small change of a number is a large one of the motion."""
 SHORTER = 2.0**-8
 """Part of a step that is tried where a mechanism refuses so large a one."""
 KINKED = 1e-2
@@ -116,7 +119,7 @@ class Variation:
         self.work = copy.deepcopy(m)
         self.base, self.span, self.close, self.contacts, self.starts = base, span, close, contacts or [], starts
         self.loads = loads
-        self.given = repr((self.work.starts, self.work.velocities))
+        self.given = dict(self.work.starts), dict(self.work.velocities)
         self.saved = SavedModel(self.work)
         self.first = pack(self.work, self._contacts(self.work))
         self.motions, self.laws = list(self.first.motions), laws_of(self.first)
@@ -163,7 +166,7 @@ class Variation:
             return Variant(offset, terms, dict(m.traces), places, masses, same_loads, start, dict(m.events))
 
     def _starts_alike(self, m: Model) -> bool:
-        return repr((m.starts, m.velocities)) == self.given
+        return (m.starts, m.velocities) == self.given
 
     def _pushes_alike(self, m: Model, packed: Packed) -> bool:
         """Return True if forces are clearly those of the motion: elements alone, without masses, at the same arms."""

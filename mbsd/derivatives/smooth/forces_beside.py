@@ -103,8 +103,8 @@ def slopes_of_forces(loads, laws, inertia, beside, t, held, rates, force, load, 
         for p in range(out.shape[0]):
             if pushing < beside.which.shape[0] and beside.which[pushing] == p:
                 slope_of_force(
-                    loads, laws, beside.per[pushing], beside.place[pushing], beside.number[pushing], t[k], held.q[k],
-                    held.v[k], held.cos_sin[k], load, force,
+                    loads, laws, beside.per[pushing], beside.place[pushing], beside.number[pushing], t[k],
+                    held.pose[k, 0], held.pose[k, 1], held.cos_sin[k], load, force,
                 )  # fmt: skip
                 pushing += 1
             else:

@@ -9,19 +9,20 @@ than how bodies move. It is for mechanisms whose bodies closed forms place, by a
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from mbsd.derivatives.free.free_tangents import REACH, at_rows, slight_changes
 from mbsd.derivatives.free.linear_motion import Carried, carried
 from mbsd.derivatives.free.stretch import Stretch, Tangents
+from mbsd.derivatives.numbers.number_steps import step_of
 from mbsd.derivatives.numbers.terms import Along, Terms
-from mbsd.derivatives.numbers.variants import Variants
+from mbsd.derivatives.numbers.variants import ALLOWED, FAR, TINY, Variants
 from mbsd.derivatives.smooth.between_looks import between_looks
 from mbsd.derivatives.smooth.forces_beside import slopes_of_forces
 from mbsd.derivatives.smooth.rates_beside import FIRST, Held, motions_beside, rates_beside
-from mbsd.derivatives.smooth.sides import Sides, forces_beside
+from mbsd.derivatives.smooth.sides import BothSides, Sides, forces_beside
 from mbsd.derivatives.smooth.smooth_motion import CLOSE, NotSmooth
 from mbsd.dynamics.independent.arrays import Embedding
 from mbsd.dynamics.measures.quantities import Motions
@@ -51,12 +52,21 @@ def suits(ready: PreparedDynamics | None) -> Embedded | None:
     return made
 
 
-class IndependentTangents:
-    """Tangents of one smooth motion by numbers, whose sides ``every`` holds."""
+States = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+"""t (T,) (s), poses (T, 3 nb) and coordinates (T, 3 + f) of a motion, and states (T, 2, 3 + f) near it."""
 
-    def __init__(self, ready: PreparedDynamics, made: Embedded, arrays: Embedding, every: list[Sides]) -> None:
-        self.ready, self.made, self.arrays, self.every = ready, made, arrays, every
+
+class IndependentTangents:
+    """Tangents of one smooth motion by numbers; their sides come nearer where they take bodies too far."""
+
+    def __init__(self, ready: PreparedDynamics, made: Embedded, both: BothSides) -> None:
+        self.ready, self.made, self.both, self.every, self.arrays = ready, made, both, both.every, both.arrays
+        self.alone = np.zeros(len(both.near))
+        """How far (sizes, rad) bodies go with a side of each number alone, coordinates held."""
+        self.share = 0.0
+        """How far bodies go at most (sizes, rad), for a change of a coordinate by its size."""
         self.f = len(made.coordinates)
+        self.scale = ready.packed.column_scale()
         self.scratch = embedding_scratch(ready, made, 1, ready.initial.q)
         width = len(ready.initial.q)
         self.basis = np.zeros((self.f, width))
@@ -82,31 +92,24 @@ class IndependentTangents:
                 at = 1 + 2 * (part * f + i)
                 states[:, at, part, FIRST + i] += step[i]
                 states[:, at + 1, part, FIRST + i] -= step[i]
-        system = self.ready.packed.system
-        scratch = self.scratch
-        shapes = scratch.rate.shape, scratch.cos_sin.shape, scratch.q.shape, scratch.v.shape
+        shapes = self.scratch.rate.shape, self.scratch.cos_sin.shape, (2, len(self.scratch.q))
         held = Held(*(np.zeros((count, *shape)) for shape in shapes))
-        rates = self._rates(self.arrays, system.mass, system.inertia, t, states, held)
+        rates = self._rates(t, states, held)
         if np.abs(rates[:, 0] - bend).max(initial=0.0) > CLOSE * np.abs(bend).max(initial=0.0):
             raise NotSmooth
         pairs = rates[:, 1:].reshape(count, 2 * f, 2, f)
         matrix = (pairs[:, :, 0] - pairs[:, :, 1]) / (2 * np.concatenate([far, fast]))[:, None]
-        right = np.zeros((count, f, len(self.every)))
-        light = [p for p, sides in enumerate(self.every) if sides.near is not None]
+        right, light = np.zeros((count, f, len(self.alone))), self.both.light
         if light:
-            right[:, :, light] = self._slopes_of_forces(light, t, held, rates).transpose(1, 2, 0)
-        none, itself = Held(*(part[:0] for part in held)), np.ascontiguousarray(states[:, :1])
-        for p, sides in enumerate(self.every):
-            for k, weight in enumerate(sides.weights.tolist() if sides.near is None else ()):
-                if sides.away[k]:
-                    own = self._rates(sides.arrays[k], sides.mass[k], sides.moment[k], t, itself, none)
-                    right[:, :, p] += weight * own[:, 0]
-                else:
-                    right[:, :, p] += weight * rates[:, 0]
-        y = np.concatenate([self.basis @ np.array([sides.begun[part] for sides in self.every]).T for part in range(2)])
+            right[:, :, light] = self._slopes_of_forces(t, held, rates).transpose(1, 2, 0)
+        here = t, np.ascontiguousarray(held.pose[:, 0]), states[:, 0, 0].copy(), states[:, 0].copy()
+        room = np.zeros_like(held.pose), np.zeros((count, held.pose.shape[2]))
+        for p in self.every.keys() - {*light}:
+            right[:, :, p] = self._slope(p, here, rates[:, 0], room)
+        y = np.concatenate([self.basis @ self.both.begun(part).T for part in range(2)])
         fastest = float(np.abs(speed).max(initial=0.0)) or 1.0
-        sizes = np.array([sides.size for sides in self.every])
-        return carried(t, matrix.transpose(0, 2, 1).copy(), right, y, slight_changes(f, fastest, sizes))
+        slight = slight_changes(f, fastest, np.array(self.both.sizes))
+        return carried(t, matrix.transpose(0, 2, 1).copy(), right, y, slight)
 
     def motion(self, along: Outputs, traces: Mapping[str, Marker]) -> Motions:
         """The motion itself."""
@@ -132,12 +135,14 @@ class IndependentTangents:
         """
         packed = self.ready.packed
         count, width = along.q.shape
-        of = [p for p, sides in enumerate(self.every) for _ in sides.away]
-        away = np.concatenate([sides.away for sides in self.every])
-        weights = np.zeros((len(self.every), len(of)))
-        weights[of, np.arange(len(of))] = np.concatenate([sides.weights for sides in self.every])
+        self._set_steps(y)
+        every = [self.every[p] for p in range(len(self.every))]
+        of = [p for p, sides in enumerate(every) for _ in sides.away]
+        away = np.concatenate([sides.away for sides in every])
+        weights = np.zeros((len(every), len(of)))
+        weights[of, np.arange(len(of))] = np.concatenate([sides.weights for sides in every])
         mass, moment, com = (
-            np.concatenate([getattr(sides, name) for sides in self.every]) for name in ("mass", "moment", "com")
+            np.concatenate([getattr(sides, name) for sides in every]) for name in ("mass", "moment", "com")
         )
         z = np.zeros((count, FIRST + self.f))
         z[:, FIRST:] = along.q @ self.basis.T
@@ -146,60 +151,42 @@ class IndependentTangents:
         states[:, :, 0, FIRST:] = z[:, FIRST:] + moved[:, :, 0]
         states[:, :, 1, FIRST:] = along.v @ self.basis.T + moved[:, :, 1]
         poses, a = np.zeros((len(of), count, 2, width)), np.zeros((len(of), count, width))
-        own = [accelerations or self.every[p].near is None for p in of]
-        light = np.flatnonzero(~np.array(own))
+        own = np.array([accelerations or p not in self.both.light for p in of])
+        light = np.flatnonzero(~own)
         if len(light):
-            many = (np.concatenate([part] * len(light)) for part in (along.t, along.q, z))
+            many = [np.concatenate([part] * len(light)) for part in (along.t, along.q, z)]
+            system, given = packed.system, states[light].reshape(-1, *states.shape[2:])
             there, rest = poses[light].reshape(-1, 2, width), a[light].reshape(-1, width)
-            self._begin(self.arrays, packed.system.mass, packed.system.inertia, states[0, 0], float(along.t[0]))
-            given = states[light].reshape(-1, 2, FIRST + self.f)
-            if motions_beside(self.arrays, self.scratch, *many, given, False, there, rest) < len(given):
-                raise NotSmooth
-            poses[light] = there.reshape(len(light), count, 2, width)
+            self._move(self.arrays, system.mass, system.inertia, (*many, given), False, there, rest)
+            poses[light] = there.reshape(len(light), *poses.shape[1:])
         for s in np.flatnonzero(own).tolist():
-            sides = self.every[of[s]]
-            arrays = sides.arrays[s - of.index(of[s])]
-            self._begin(arrays, mass[s], moment[s], states[s, 0], float(along.t[0]))
-            here = along.t, along.q, z, states[s], accelerations
-            if motions_beside(arrays, self.scratch, *here, poses[s], a[s]) < count:
-                raise NotSmooth
-        self.ready.packed.specials.check()
+            arrays, here = every[of[s]].arrays[s - of.index(of[s])], (along.t, along.q, z, states[s])
+            self._move(arrays, mass[s], moment[s], here, accelerations, poses[s], a[s])
         q, v, a = (part.reshape(len(of), count, -1, 3) for part in (poses[:, :, 0], poses[:, :, 1], a))
         work = np.zeros(q.shape[:2])
-        return Motions(packed.body_names, q, v, a, work, com, mass, moment, self._places(traces), along.t), weights
+        return Motions(
+            packed.body_names, q, v, a, work, com, mass, moment, self._places(traces, every), along.t
+        ), weights
 
-    def reaches_alone(self, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> list[float]:
-        """Return how far (sizes, rad) bodies go with each number alone at t (R,), q, v (R, 3 nb), coordinates held."""
-        scale, out = self.ready.packed.column_scale(), list[float]()
-        z, states = np.zeros((len(t), FIRST + self.f)), np.zeros((len(t), 2, FIRST + self.f))
-        z[:, FIRST:] = states[:, 0, FIRST:] = q @ self.basis.T
-        states[:, 1, FIRST:] = v @ self.basis.T
-        poses, a = np.zeros((len(t), 2, q.shape[1])), np.zeros_like(q)
-        for sides in self.every:
-            if sides.near is not None:
-                out.append(0.0)
-                continue
-            self._begin(sides.arrays[-1], sides.mass[-1], sides.moment[-1], states[0], float(t[0]))
-            if motions_beside(sides.arrays[-1], self.scratch, t, q, z, states, False, poses, a) < len(t):
-                raise NotSmooth
-            out.append(float(np.abs((poses[:, 0, 3:] - q[:, 3:]) / scale).max(initial=0.0)))
-        return out
+    def _set_steps(self, y: np.ndarray) -> None:
+        """Take sides at which bodies do not go too far along tangents y (R, 2 f, P)."""
+        most = np.abs(y[:, : self.f]).max(axis=0, initial=0.0)
+        changed = self.share / self.made.arrays.size @ most
+        """(P,) how far coordinates take bodies at most (sizes, rad), by a change of each number."""
+        steps: dict[int, float] = {}
+        for p, size in enumerate(self.both.sizes):
+            far = float(self.alone[p] + changed[p] * step_of(TINY, size))
+            if far > ALLOWED * FAR or p in self.both.light:
+                steps[p] = TINY * (FAR / far if far > ALLOWED * FAR else 1.0)
+        self.both.set_steps(steps)
 
-    def reaches(self, motions: Motions) -> list[float]:
-        """Return how far (sizes, rad) bodies go from one side of each number to the other, at most, halved."""
-        scale, first, out = self.ready.packed.column_scale(), 0, list[float]()
-        for sides in self.every:
-            last = first + len(sides.away)
-            own = motions.q[first:last, :, 1:].reshape(len(sides.away), -1, len(scale))
-            out.append(0.5 * float((np.ptp(own, axis=0) / scale).max(initial=0.0)))
-            first = last
-        return out
-
-    def _places(self, traces: Mapping[str, Marker]) -> dict[str, tuple[int, np.ndarray, np.ndarray]]:
+    def _places(
+        self, traces: Mapping[str, Marker], every: Sequence[Sides]
+    ) -> dict[str, tuple[int, np.ndarray, np.ndarray]]:
         """Body, places (K, 2) on all sides, and angle (1,) of each traced point."""
         out: dict[str, tuple[int, np.ndarray, np.ndarray]] = {}
         for name, marker in traces.items():
-            moved = [sides.traces.get(name, np.zeros((len(sides.away), 2))) for sides in self.every]
+            moved = [sides.traces.get(name, np.zeros((len(sides.away), 2))) for sides in every]
             place = np.array([marker.x, marker.y]) + np.concatenate(moved)
             out[name] = self.ready.packed.body_names.index(marker.body.name), place, np.array([marker.angle])
         return out
@@ -212,21 +199,52 @@ class IndependentTangents:
         stretch = Stretch(along, compact, rows, [], everywhere, everywhere)
         return at_rows(terms, stretch, variants, self.basis[:, 3:], line.at(along.t))
 
-    def _rates(
-        self, arrays: Embedding, mass: np.ndarray, moment: np.ndarray, t: np.ndarray, states: np.ndarray, held: Held
-    ) -> np.ndarray:
-        self._begin(arrays, mass, moment, states[0, 0], float(t[0]))
-        out, sensitivity = np.zeros((*states.shape[:2], self.f)), np.zeros(1)
-        clear = rates_beside(arrays, self.scratch, t, states, held, sensitivity, out)
+    def _slope(self, p: int, here: States, rates: np.ndarray, room: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+        """(T, f) how z'' changes with number p at held states, where it is ``rates`` (T, f); ``room`` is scratch."""
+        last, self.alone[p] = self._beside(p, -1, here, *room)
+        if self.alone[p] > ALLOWED * FAR:
+            self.both.set_steps({p: TINY * FAR / float(self.alone[p])})
+            last, self.alone[p] = self._beside(p, -1, here, *room)
+        sides, out = self.every[p], last
+        out *= sides.weights[-1]
+        for k, weight in enumerate(sides.weights[:-1].tolist()):
+            out += weight * (self._beside(p, k, here, *room)[0] if sides.away[k] else rates)
+        return out
+
+    def _beside(self, p: int, k: int, here: States, poses: np.ndarray, a: np.ndarray) -> tuple[np.ndarray, float]:
+        """(T, f) z'' on side k of number p at held states, and how far bodies go there (sizes, rad)."""
+        sides = self.every[p]
+        self._move(sides.arrays[k], sides.mass[k], sides.moment[k], here, True, poses, a)
+        return a @ self.basis.T, float(np.abs((poses[:, 0, 3:] - here[1][:, 3:]) / self.scale).max(initial=0.0))
+
+    def _move(
+        self, arrays: Embedding, mass: np.ndarray, moment: np.ndarray, here: States, forces: bool, poses: np.ndarray,
+        a: np.ndarray,
+    ) -> None:  # fmt: skip
+        """Fill poses and velocities (T, 2, 3 nb), and with ``forces`` accelerations a (T, 3 nb). Raises NotSmooth."""
+        t, *_, states = here
+        self._begin(arrays, mass, moment, states[0], float(t[0]))
+        clear = motions_beside(arrays, self.scratch, *here, forces, poses, a)
         self.ready.packed.specials.check()
-        if clear < len(t) or sensitivity[0] > FASTEST:
+        if clear < len(t):
+            raise NotSmooth
+
+    def _rates(self, t: np.ndarray, states: np.ndarray, held: Held) -> np.ndarray:
+        """(T, S, f) z'' at states (T, S, 2, 3 + f). Raises NotSmooth."""
+        system = self.ready.packed.system
+        self._begin(self.arrays, system.mass, system.inertia, states[0, 0], float(t[0]))
+        out, sensitivity = np.zeros((*states.shape[:2], self.f)), np.zeros(1)
+        clear = rates_beside(self.arrays, self.scratch, t, states, held, sensitivity, out)
+        self.ready.packed.specials.check()
+        self.share = float(sensitivity[0])
+        if clear < len(t) or self.share > FASTEST:
             raise NotSmooth
         return out
 
-    def _slopes_of_forces(self, light: list[int], t: np.ndarray, held: Held, rates: np.ndarray) -> np.ndarray:
-        """(L, T, f) how z'' changes with the numbers ``light`` at a held motion."""
-        system, arrays = self.ready.packed.system, self.arrays
-        near = [own for own in (self.every[p].near for p in light) if own is not None]
+    def _slopes_of_forces(self, t: np.ndarray, held: Held, rates: np.ndarray) -> np.ndarray:
+        """(L, T, f) how z'' changes with the light numbers at a held motion."""
+        system, arrays, light = self.ready.packed.system, self.arrays, self.both.light
+        near = [own for own in (self.both.near[p] for p in light) if own is not None]
         beside, width = forces_beside(arrays, system.gravity, system.mass, near), len(arrays.inertia)
         out, work = np.zeros((len(light), *rates[:, 0].shape)), (*np.zeros((3, width)), self.scratch.mass)
         if slopes_of_forces(arrays.loads, arrays.laws, arrays.inertia, beside, t, held, rates, *work, out) < len(t):

@@ -13,26 +13,24 @@ FIRST = 3
 
 
 class Held(NamedTuple):
-    """A motion at T times as its forces see it; no times if it is not kept."""
+    """A motion at T times as its forces see it."""
 
     rate: Any
-    """(T, nb, 3 (C + 1)) as EmbeddingScratch has it; so are the others."""
+    """(T, nb, 3 (C + 1)) as EmbeddingScratch has it; so is cos_sin."""
     cos_sin: Any
-    q: Any
-    v: Any
+    pose: Any
+    """(T, 2, 3 nb) places and velocities."""
 
 
 @internal
-def hold(scratch, held, k):
+def hold(scratch, rates, held, k):
     """Keep what was evaluated last."""
+    place_all(scratch, rates, False, held.pose[k], scratch.force)
     for b in range(scratch.rate.shape[0]):
         for c in range(scratch.rate.shape[1]):
             held.rate[k, b, c] = scratch.rate[b, c]
         for c in range(2):
             held.cos_sin[k, b, c] = scratch.cos_sin[b, c]
-        for c in range(3 * b, 3 * b + 3):
-            held.q[k, c] = scratch.q[c]
-            held.v[k, c] = scratch.v[c]
 
 
 @kernel
@@ -51,10 +49,9 @@ def rates_beside(dyn, scratch, t, states, held, sensitivity, out):
             for i in range(out.shape[2]):
                 out[k, s, i] = rates[FIRST + i]
             if s == 0:
+                hold(scratch, rates, held, k)
                 settle(dyn, scratch, t[k], states[k, s], True)
                 sensitivity[0] = max(sensitivity[0], scratch.watch[0])
-                if held.rate.shape[0] > 0:
-                    hold(scratch, held, k)
     return states.shape[0]
 
 

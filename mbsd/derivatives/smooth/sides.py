@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property, partial
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -24,7 +24,6 @@ from mbsd.dynamics.runs.embedding import Embedded
 from mbsd.kinematics.groups.carrying.columns import AVOID, SIGN
 from mbsd.kinematics.groups.groups import KIND
 from mbsd.kinematics.groups.tables import rows_of
-from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model
 from mbsd.numbers.names import Number
 
@@ -50,8 +49,6 @@ class Sides:
     begun: tuple[np.ndarray, np.ndarray]
     """(3 nb,) q' and v' at the start."""
     make: Callable[[], list[Embedding]]
-    near: Near | None = None
-    """What they go on from, where that is masses and forces alone."""
 
     @cached_property
     def arrays(self) -> list[Embedding]:
@@ -60,66 +57,67 @@ class Sides:
 
 
 class BothSides:
-    """Makes the sides of numbers of a mechanism made ``ready``, with ``arrays`` of one run of ``made``.
+    """Sides of ``numbers`` of ``m``, made ``ready``, with ``arrays`` of one run of ``made``.
 
-    ``variation`` makes the mechanism with other values of them.
+    ``variation`` makes the mechanism with other values of them; ``whole``: for more than how bodies move. Raises
+    NotSmooth where the groups are others.
     """
 
-    def __init__(self, ready: PreparedDynamics, made: Embedded, arrays: Embedding, variation: Variation) -> None:
-        self.ready, self.made, self.arrays, self.variation = ready, made, arrays, variation
-        self.numbers: Sequence[Number] = ()
-        self.near: list[Near | None] = []
+    def __init__(
+        self, m: Model, ready: PreparedDynamics, made: Embedded, arrays: Embedding, variation: Variation,
+        numbers: Sequence[Number], whole: bool,
+    ) -> None:  # fmt: skip
+        self.ready, self.made, self.arrays, self.variation, self.numbers = ready, made, arrays, variation, numbers
+        near = NearNumbers(variation, StartTangents(m, ready), arrays.loads, whole)
+        self.near = [near.of(number) for number in numbers]
         """By number, how arrays change with it; None where they do not go on straight."""
+        self.light = [p for p, near in enumerate(self.near) if near is not None and near.packed is None]
+        """Numbers that change masses and forces alone."""
+        self.every: dict[int, Sides] = {}
+        """By number; those of light ones once their steps are set."""
+        self._slopes: dict[int, np.ndarray] = {}
+        """(g, 14) slopes of the numbers of the groups by a number that changes places, or (g, 21) of their rows."""
+        self.set_steps({p: TINY for p in range(len(numbers)) if p not in self.light})
+        self.sizes = [self.every[p].size if near is None else near.size for p, near in enumerate(self.near)]
+        """What steps of numbers are parts of."""
 
-    def of(self, m: Model, numbers: Sequence[Number], whole: bool) -> list[Sides]:
-        """Return sides of all numbers of ``m``; ``whole``: for more than how bodies move.
+    def begun(self, part: int) -> np.ndarray:
+        """(P, 3 nb) q' at the start; v' as ``part`` 1."""
+        return np.array([(self.every[p] if near is None else near).begun[part] for p, near in enumerate(self.near)])
 
-        Raises NotSmooth where the groups are others.
-        """
-        near = NearNumbers(self.variation, StartTangents(m, self.ready), self.arrays.loads, whole)
-        self.numbers, self.near = numbers, [near.of(number) for number in numbers]
-        straight = iter(self.straight([own for own in self.near if own is not None]))
-        return [
-            next(straight) if own is not None else self.packed(self.variation.of(number, SECOND, TINY), m.traces)
-            for number, own in zip(numbers, self.near, strict=True)
-        ]
+    def set_steps(self, steps: Mapping[int, float]) -> None:
+        """Take sides of some numbers that are so many of their sizes away. Raises NotSmooth likewise."""
+        straight = {p: near for p, near in enumerate(self.near) if p in steps and near is not None}
+        if straight:
+            self.every.update(self._straight_sides(straight, [steps[p] for p in straight]))
+        for p in steps.keys() - straight.keys():
+            self.every[p] = self._packed(self.variation.of(self.numbers[p], SECOND, steps[p]))
 
-    def nearer(self, p: int, step: float, traces: Mapping[str, Marker]) -> Sides:
-        """Return sides of number p that are ``step`` of its size away, less than usual. Raises NotSmooth likewise."""
-        near = self.near[p]
-        if near is not None:
-            return self.straight([near], step)[0]
-        return self.packed(self.variation.of(self.numbers[p], SECOND, step), traces)
-
-    def straight(self, every: Sequence[Near], step: float = TINY) -> list[Sides]:
-        """Return sides of numbers, ``step`` of their sizes away, on both of which all arrays go on straight."""
-        if not every:
-            return []
-        system, com = self.ready.packed.system, self.ready.packed.com
-        away = np.array([step_of(step, near.size) for near in every])[:, None] * np.array([-1.0, 1.0])
+    def _straight_sides(self, straight: Mapping[int, Near], steps: Sequence[float]) -> dict[int, Sides]:
+        """Return sides of numbers on both sides of which all arrays go on straight."""
+        system, com, every = self.ready.packed.system, self.ready.packed.com, list(straight.values())
+        away = np.outer([step_of(step, near.size) for step, near in zip(steps, every, strict=True)], [-1.0, 1.0])
         far, weights = away[:, :, None], 0.5 / away
         mass = system.mass + far * np.array([near.mass for near in every])[:, None]
         moment = system.inertia + far * np.array([near.moment for near in every])[:, None]
         coms = com + far[..., None] * np.array([near.com for near in every])[:, None]
-        moved = [p for p, near in enumerate(every) if near.packed is not None]
-        rows = cache(lambda: dict(zip(moved, self._rows_beside([every[p] for p in moved], away[moved]), strict=True)))
-        return [
-            Sides(
+        rows = self._rows_beside({p: away[k] for k, p in enumerate(straight) if p not in self.light})
+        return {
+            p: Sides(
                 near.size,
-                away[p],
-                weights[p],
-                mass[p],
-                moment[p],
-                coms[p],
-                {name: far[p] * slope for name, slope in near.traces.items()},
+                away[k],
+                weights[k],
+                mass[k],
+                moment[k],
+                coms[k],
+                {name: far[k] * slope for name, slope in near.traces.items()},
                 near.begun,
-                partial(self._straight, near, away[p].tolist(), None if near.packed is None else partial(_at, rows, p)),
-                near if near.packed is None else None,
+                partial(self._straight, near, away[k].tolist(), rows.get(p)),
             )
-            for p, near in enumerate(every)
-        ]
+            for k, (p, near) in enumerate(straight.items())
+        }
 
-    def _straight(self, near: Near, away: list[float], rows: Callable[[], np.ndarray] | None) -> list[Embedding]:
+    def _straight(self, near: Near, away: list[float], rows: np.ndarray | None) -> list[Embedding]:
         """Arrays for changes ``away`` of a number, with (2, g, 21) ``rows`` of the groups, if these change."""
         system, arrays = self.ready.packed.system, self.arrays
         slopes: dict[str, np.ndarray] = {}
@@ -130,48 +128,51 @@ class BothSides:
             slopes["weight"] = near.weight(system.gravity, system.mass)
         if pulled:
             slopes["gravity"] = near.gravity
-        number = None if rows is None else rows()
         out: list[Embedding] = []
         for side, h in enumerate(away):
             own: dict[str, Any] = {name: getattr(arrays, name) + h * slope for name, slope in slopes.items()}
-            if number is not None:
-                own["number"] = number[side]
+            if rows is not None:
+                own["number"] = rows[side]
             if near.loads:
                 parts = {name: getattr(arrays.loads, name) + h * slope for name, slope in near.loads.items()}
                 own["loads"] = arrays.loads._replace(**parts)
             out.append(arrays._replace(**own))
         return out
 
-    def _rows_beside(self, every: Sequence[Near], away: np.ndarray) -> np.ndarray:
-        """(n, 2, g, 21) those of the groups for changes ``away`` (n, 2) of numbers that change places.
+    def _rows_beside(self, away: Mapping[int, np.ndarray]) -> dict[int, np.ndarray]:
+        """(2, g, 21) rows of the groups for changes ``away`` (2,) of numbers that change places.
 
         Numbers of groups are linear in places, rows that are made of them are not.
         """
-        plan, arrays = self.made.plan, self.arrays
-        own = plan.numbers()
-        numbers = np.repeat(own[None], 2 * len(every), axis=0).reshape(len(every), 2, *own.shape)
-        apart: dict[int, np.ndarray] = {}
-        for k, near in enumerate(every):
-            assert near.packed is not None
-            remade = plan.remade(near.packed)
-            if remade is None:
-                slope = (self._rows_found(near.packed) - arrays.number) / near.away
-                slope[:, SIGN:] = 0.0
-                apart[k] = arrays.number + away[k, :, None, None] * slope
-            else:
-                numbers[k] += away[k, :, None, None] * ((remade - own) / near.away)
-        rows = rows_of(arrays.group[:, KIND], numbers)
-        rows[..., SIGN:] = arrays.number[:, SIGN:]
-        for k, row in apart.items():
-            rows[k] = row
-        return rows
+        if not away:
+            return {}
+        own, row = self.made.plan.numbers(), self.arrays.number
+        slopes = {p: self._slope_of_groups(p, own) for p in away}
+        straight = [p for p, slope in slopes.items() if slope.shape == own.shape]
+        out = {p: row + h[:, None, None] * slopes[p] for p, h in away.items() if p not in straight}
+        numbers = np.array([own + away[p][:, None, None] * slopes[p] for p in straight]).reshape(-1, 2, *own.shape)
+        rows = rows_of(self.arrays.group[:, KIND], numbers)
+        rows[..., SIGN:] = row[:, SIGN:]
+        return out | dict(zip(straight, rows, strict=True))
 
-    def packed(self, variants: Variants, traces: Mapping[str, Marker]) -> Sides:
-        """Return sides that were packed each by itself, of a mechanism with ``traces``. Raises NotSmooth likewise."""
+    def _slope_of_groups(self, p: int, own: np.ndarray) -> np.ndarray:
+        near = self.near[p]
+        if p not in self._slopes and near is not None and near.packed is not None:
+            remade = self.made.plan.remade(near.packed)
+            if remade is None:
+                slope = (self._rows_found(near.packed) - self.arrays.number) / near.away
+                slope[:, SIGN:] = 0.0
+            else:
+                slope = (remade - own) / near.away
+            self._slopes[p] = slope
+        return self._slopes[p]
+
+    def _packed(self, variants: Variants) -> Sides:
+        """Return sides that were packed each by itself. Raises NotSmooth likewise."""
         own = variants.variants
         systems = [variant.terms.packed.system for variant in own]
         moved: dict[str, np.ndarray] = {}
-        for name, marker in traces.items():
+        for name, marker in self.variation.saved.traces.items():
             places = [variant.traces[name] for variant in own]
             if any(place.angle != marker.angle for place in places):
                 raise NotSmooth
@@ -213,10 +214,6 @@ class BothSides:
             own["number"] = self._rows(terms.packed)
             own["number"][:, AVOID] = arrays.number[:, AVOID]
         return arrays._replace(**own)
-
-
-def _at(rows: Callable[[], Mapping[int, np.ndarray]], p: int) -> np.ndarray:
-    return rows()[p]
 
 
 def forces_beside(arrays: Embedding, gravity: np.ndarray, mass: np.ndarray, every: Sequence[Near]) -> ForcesBeside:

@@ -22,8 +22,10 @@ from mbsd.base.errors import MechanismError
 from mbsd.dynamics.batch.designs import Designs
 from mbsd.dynamics.batch.single_run import Base
 from mbsd.dynamics.batch.starts import Starts, starts_of
-from mbsd.dynamics.events.arrays import KINETIC, RESTITUTION, STATIC
-from mbsd.dynamics.independent.arrays import KEPT_Q, KEPT_SIZE, Embedding
+from mbsd.dynamics.events.arrays import ARGUMENTS, FRICTION_ARGUMENTS
+from mbsd.dynamics.events.packing import entries_of
+from mbsd.dynamics.independent.arrays import Embedding
+from mbsd.dynamics.independent.block import KEPT_Q, KEPT_SIZE
 from mbsd.dynamics.independent.coordinates import coordinates_along
 from mbsd.dynamics.prepare.inertia import USUAL
 from mbsd.dynamics.prepare.refusals import presses
@@ -68,7 +70,7 @@ class Patches:
                 columns += self._of_force(name, values)
             elif name in m.bodies and set(values) <= {"mass", "inertia"}:
                 self._take_masses(name, values)
-            elif name in m.contacts and set(values) <= {"restitution", "friction", "static_friction"}:
+            elif name in m.contacts and set(values) <= {*ARGUMENTS, *FRICTION_ARGUMENTS}:
                 columns += self._of_contact(name, values)
             else:
                 raise _other(name, values)
@@ -204,7 +206,7 @@ class Patches:
         if "friction" in columns and followers == {"static_friction"}:  # it was not given
             columns["static_friction"] = columns["friction"]
             followers = set()
-        none = {"friction": 0.0, "static_friction": 0.0}
+        none = dict.fromkeys(FRICTION_ARGUMENTS, 0.0)
         numbers: dict[str, Any] = {**none, **self.designs.m.contacts[name].params, **columns}
         friction, static = np.asarray(numbers["friction"]), np.asarray(numbers["static_friction"])
         if followers or (static < friction).any() or ("friction" in columns and not (friction > 0.0).all()):
@@ -212,15 +214,12 @@ class Patches:
         contacts = getattr(self.base.parts, "contacts", None)
         if contacts is None:  # parts of a loop that meets none
             return
-        own = [contact.name for contact in self.ready.switches.contacts].index(name)
-        sliding, place = self.ready.switches.contacts[own].sliding, self.base.layout.place
+        entries = entries_of(self.ready, contacts, name)
         for key, column in columns.items():
-            if key == "restitution":
-                yield place(contacts.number, own, RESTITUTION), column
-            elif sliding < 0:
+            if key not in entries:
                 raise _other(name, values)
-            else:
-                yield place(contacts.friction.number, sliding, KINETIC if key == "friction" else STATIC), column
+            array, index = entries[key]
+            yield self.base.layout.place(array, *index), column
 
     # -- masses --------------------------------------------------------------------------------------------------
 
@@ -244,28 +243,24 @@ class Patches:
     def _of_masses(self) -> Iterator[Column]:
         assert self.mass is not None
         assert self.inertia is not None
-        dyn, layout, dynamics = self.base.parts.dyn, self.base.layout, self.ready.dynamics
-        gravity = self.ready.packed.system.gravity
-        whole = np.repeat(self.mass, 3, axis=1)
+        dyn, scratch, place = self.base.parts.dyn, self.base.parts.scratch, self.base.layout.place
+        system, embedded = self.ready.packed.system, isinstance(self.base.parts.dyn, Embedding)
+        whole, gravity = np.repeat(self.mass, 3, axis=1), [*system.gravity, 0.0]
         whole[:, 2::3] = self.inertia
-        self._refuse_light(whole, dynamics.per_size)
-        changed = np.flatnonzero((self.mass != self.mass[:1]).any(axis=0) | (self.inertia != self.inertia[:1]).any(0)
-                                 | (self.mass[0] != self.ready.packed.system.mass)
-                                 | (self.inertia[0] != self.ready.packed.system.inertia))  # fmt: skip
-        for b in changed.tolist():
-            for c in range(3):
-                at, value = 3 * b + c, whole[:, 3 * b + c].copy()
-                yield layout.place(dyn.inertia, at), value
-                yield layout.place(dyn.weight, at), value * (gravity[c] if c < 2 else 0.0)
-                if not isinstance(dyn, Embedding):
-                    yield layout.place(dyn.inverse, at), 1.0 / value
-                    yield layout.place(dyn.metric, at), 1.0 / value
-            if isinstance(dyn, Embedding):
-                yield layout.place(self.base.parts.scratch.body, b, MASS), self.mass[:, b].copy()
-                yield layout.place(self.base.parts.scratch.body, b, INERTIA), self.inertia[:, b].copy()
+        self._refuse_light(whole, self.ready.dynamics.per_size)
+        changed = (self.mass != system.mass) | (self.inertia != system.inertia)
+        for b in np.flatnonzero(changed.any(axis=0)).tolist():
+            for at in range(3 * b, 3 * b + 3):
+                value = whole[:, at].copy()
+                yield place(dyn.inertia, at), value
+                yield place(dyn.weight, at), value * gravity[at % 3]
+                if not embedded:
+                    yield from ((place(part, at), 1.0 / value) for part in (dyn.inverse, dyn.metric))
+            if embedded:
+                places = place(scratch.body, b, MASS), place(scratch.body, b, INERTIA)
             else:
-                yield layout.place(dyn.system.mass, b), self.mass[:, b].copy()
-                yield layout.place(dyn.system.inertia, b), self.inertia[:, b].copy()
+                places = place(dyn.system.mass, b), place(dyn.system.inertia, b)
+            yield from zip(places, (self.mass[:, b].copy(), self.inertia[:, b].copy()), strict=True)
 
     def _refuse_light(self, whole: np.ndarray, per_size: np.ndarray) -> None:
         """Raise NotPatched where masses are so far apart, or zero, that equations are solved otherwise."""

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 from mbsd.compiling.jit import internal, threaded
 from mbsd.dynamics.events.loop import NOT_SOLVED, OVER, go_on
 from mbsd.dynamics.formulation import derivative
-from mbsd.dynamics.genevas.steps import index
+from mbsd.dynamics.genevas import index
 from mbsd.dynamics.integrators.advance import advance_past_jumps
-from mbsd.dynamics.repeated_rows.exchange import again, opens
+from mbsd.dynamics.repeated_rows import again, opens
 from mbsd.dynamics.state import ACCEPTED, NEXT, PAUSED, REACHED, TIME, Output
 from mbsd.equations.assembly import position
 

@@ -20,8 +20,7 @@ from mbsd.base.running import cores
 from mbsd.base.users_function import described, refuse_other_arguments, users_progress
 from mbsd.base.warning import quiet
 from mbsd.dynamics.batch.designs import Designs
-from mbsd.dynamics.batch.early import all_outputs, plan_of
-from mbsd.dynamics.batch.loop import Measures, Work
+from mbsd.dynamics.batch.loop import Measures, Work, all_outputs, plan_of
 from mbsd.dynamics.batch.single_run import NotCompiled, single_run
 from mbsd.dynamics.batch.worker import TRIED, Worker
 from mbsd.dynamics.integrators.advance import PAUSED_ANYWHERE

@@ -14,16 +14,13 @@ from mbsd.arrays.packing import Packed
 from mbsd.dynamics.batch.block import content, kind_of, laid_out
 from mbsd.dynamics.batch.rows import Numbers
 from mbsd.dynamics.events.arrays import Contacts
-from mbsd.dynamics.events.packing import contacts_of
-from mbsd.dynamics.events.users import packing as users_packing
-from mbsd.dynamics.genevas.arrays import Genevas
-from mbsd.dynamics.genevas.packing import no_genevas
-from mbsd.dynamics.independent.arrays import KEPT_SIZE
+from mbsd.dynamics.events.packing import contacts_of, why_not_compiled, why_too_large
+from mbsd.dynamics.genevas import Genevas, no_genevas
+from mbsd.dynamics.independent.block import KEPT_SIZE
 from mbsd.dynamics.independent.coordinates import Coordinate
 from mbsd.dynamics.integrators.advance import number_of
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.repeated_rows import packing as repeated_packing
 from mbsd.dynamics.runs.embedding import embedded_at_start
 from mbsd.dynamics.runs.motion import NEAR, IndependentSteps, can_carry, independent_steps
 from mbsd.dynamics.runs.run import REFERENCE, Request, Run, run_of
@@ -191,7 +188,7 @@ def single_run(m: Model, asked: Request, reactive: bool = False) -> SingleRun:
     if reactive and ready.following.rows:
         raise NotCompiled("reactions where points are on curves that cross themselves")
     run = run_of(m, asked, ready)
-    why = users_packing.why_not(events, run.settings.longest)
+    why = why_not_compiled(events, run.settings.longest)
     if why is not None:
         raise NotCompiled(why)
     state, _ = ready.begun(times)
@@ -204,7 +201,7 @@ def single_run(m: Model, asked: Request, reactive: bool = False) -> SingleRun:
 def _refuse(ready: PreparedDynamics) -> None:
     """Raise NotCompiled for what Python decides between steps, and what it looks at after a simulation."""
     packed = ready.packed
-    why = repeated_packing.why_not(ready)
+    why = why_too_large(ready)
     if why is not None:
         raise NotCompiled(why)
     slow = [callback.what for callback in packed.specials.callbacks if not callback.compiled]

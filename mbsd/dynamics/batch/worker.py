@@ -15,9 +15,8 @@ from mbsd.base.users_function import described
 from mbsd.dynamics.batch.block import content
 from mbsd.dynamics.batch.designs import Built
 from mbsd.dynamics.batch.loop import MOST_STEPS, Loop, Work
-from mbsd.dynamics.batch.outputs import MotionsOf, Outputs
+from mbsd.dynamics.batch.outputs import MotionsOf, Outputs, Reactions
 from mbsd.dynamics.batch.patches import NotPatched, Patches, agrees
-from mbsd.dynamics.batch.reactions import Reactions
 from mbsd.dynamics.batch.rows import NEARLY_SINGULAR, STOPPED, Numbers
 from mbsd.dynamics.batch.single_run import (
     Base,

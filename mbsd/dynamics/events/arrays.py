@@ -10,9 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mbsd.dynamics.events.users.arrays import Events
 from mbsd.dynamics.reference.sliding import Sliding
-from mbsd.dynamics.repeated_rows.arrays import Repeated
+from mbsd.dynamics.repeated_rows import Repeated
 
 ROW, BLOCK, SIDE, KIND, RELATIVE, FRICTION = range(6)
 """Columns of Contacts.place: the row in J, its block and its place there in Schur.rows; GAP, CLUTCH, WAY or SLIDE; its
@@ -22,6 +21,8 @@ NEAR, REST, SETTLE, RESTITUTION, SCALE, CLOSED, HELD, SIGN, RELEASED = range(9)
 """Columns of Contacts.number: gap (rate of a clutch, way or slide) and rate that count as zero, slowest rebound,
 coefficient of restitution, what makes the gap dimensionless; whether it is closed (way, slide: sticks) now, and whether
 its row holds; direction in which a way or slide goes, 0 where it does not; whether an event released the joint."""
+ARGUMENTS = {"restitution": RESTITUTION}
+"""Columns of Contacts.number by the arguments of contacts."""
 VALUE, RATE, NORMAL, GIVEN, FREE, ALONE, PUSH, SHIFT = range(8)
 """Rows of Contacts.vector."""
 SKIPPED, TOUCHING, STAYING, TAKING, KEPT, RESTING = range(6)
@@ -51,6 +52,8 @@ KINETIC, STATIC, FORCED, BROKEN, GUESS, NEXT_SIGN, BESIDE, HOLDING = range(8)
 lets it leave its place, 0 where it came to rest, NO_SIGN else; the same once static friction has broken; that in which
 it is taken to slide, and what comes out; friction that may act beside that of the normal force; STATIC, or a hair less
 where all that is at rest has come to its limit."""
+FRICTION_ARGUMENTS = {"friction": KINETIC, "static_friction": STATIC}
+"""Columns of Friction.number by the arguments of contacts."""
 NO_SIGN = 2.0
 
 
@@ -215,8 +218,8 @@ class Contacts(NamedTuple):
     """The contacts with friction."""
     wheels: Wheels
     curves: Curves
-    events: Events
-    """Those of the user; e-th of them is met as row c + e."""
+    events: Any
+    """mbsd.dynamics.events.users.Events, of the user; e-th of them is met as row c + e."""
     repeated: Repeated
     """Rows of joints that repeat others."""
     log: Any

@@ -14,46 +14,12 @@ import numpy as np
 from mbsd.base.errors import ModelError, ModelWarning, SimulationError
 from mbsd.base.warning import warn
 from mbsd.compiling.callback import Callback
-from mbsd.compiling.jit import Often
-from mbsd.dynamics.events.arrays import (
-    ACTED,
-    AFTER,
-    BEFORE_AND_AFTER,
-    BEGUN,
-    BEYOND,
-    CLOSED,
-    ENERGY,
-    FAILURE,
-    LAST_STEP,
-    LENGTH,
-    LOGGED,
-    METHOD,
-    OUTSIDE,
-    PAUSES,
-    PENDING,
-    RELEASED,
-    RESUMED,
-    SIGN,
-    START,
-    WHICH,
-    Contacts,
-)
-from mbsd.dynamics.events.loop import (
-    ACTING,
-    AT_ONE_TIME,
-    FOUND,
-    JUMPED,
-    NOT_SOLVED,
-    OVER,
-    TOO_MANY,
-    run_events,
-)
+from mbsd.dynamics.events import arrays, loop, users
+from mbsd.dynamics.events.arrays import Contacts
 from mbsd.dynamics.events.moment import Moment, value_at
-from mbsd.dynamics.events.packing import contacts_of
+from mbsd.dynamics.events.packing import contacts_of, opened
 from mbsd.dynamics.events.refusals import jam_at, refuse_inside, taking_turns
 from mbsd.dynamics.events.search import CHANCE
-from mbsd.dynamics.events.users.arrays import GROUP, ROW, UNKNOWN
-from mbsd.dynamics.repeated_rows.packing import opened
 from mbsd.dynamics.runs.diagnosis import refusal
 from mbsd.dynamics.runs.run import Snapshot
 from mbsd.dynamics.runs.steps import Pace, advance, check_callbacks
@@ -71,7 +37,7 @@ EVENT_STEPS = 20
 """Steps that an event is worth where the pace of a run is looked at."""
 AHEAD = 2.0
 """Last steps within which wheels that meet are why another one fails."""
-GOES_ON = (REACHED, PAUSED, FOUND, JUMPED, ACTING, OVER)
+GOES_ON = (REACHED, PAUSED, loop.FOUND, loop.JUMPED, loop.ACTING, loop.OVER)
 """Status of runs that can go on, or have ended."""
 
 
@@ -87,11 +53,11 @@ class EventSteps:
         if run.contacts is None:
             run.contacts = contacts_of(ready, state, events, run.settings.longest, run.method, log=True)
         self.contacts: Contacts = run.contacts
-        self._go_on = ready.advancing.setdefault((run_events.__name__, type(self.dynamics)), Often(run_events))
-        if self.contacts.clock[METHOD] == OUTSIDE:
+        self._go_on = ready.loop((loop.run_events.__name__, type(self.dynamics)), loop.run_events)
+        if self.contacts.clock[arrays.METHOD] == arrays.OUTSIDE:
             self._outside = Callback(self._advance_outside, (2,), 1, f"{self.packed.name}: steps")
             self.contacts.outside.address[0] = self._outside.address
-        self.contacts.clock[PAUSES] = BEFORE_AND_AFTER if rows else AFTER
+        self.contacts.clock[arrays.PAUSES] = arrays.BEFORE_AND_AFTER if rows else arrays.AFTER
         self._failure: BaseException | None = None
         what = f"{self.packed.name}: event '"
         self._watched = [callback for callback in self.packed.specials.callbacks if callback.what.startswith(what)]
@@ -116,12 +82,12 @@ class EventSteps:
 
     def resume(self, snapshot: Snapshot, work: float) -> None:
         """Go on from where another run was, with its contacts as they were."""
-        pauses = self.contacts.clock[PAUSES]
+        pauses = self.contacts.clock[arrays.PAUSES]
         for own, given in zip(self._kept, snapshot.held, strict=True):
             own[...] = given
         self.switches.released = set(snapshot.released)
-        self.contacts.clock[PAUSES] = pauses
-        self.contacts.clock[BEGUN] = RESUMED
+        self.contacts.clock[arrays.PAUSES] = pauses
+        self.contacts.clock[arrays.BEGUN] = arrays.RESUMED
         self.ready.following.settle(*self.state.y)
         self.state.clock[WORK] = work
         self._states, self._senses, self._holding = self._read()
@@ -152,13 +118,13 @@ class EventSteps:
             ready.dropped = tuple(sorted({*ready.dropped, *opened(contacts.repeated)}))
         ready.approaches.note(float(state.clock[TIME]))
         self._note_outputs()
-        if status == FOUND:
+        if status == loop.FOUND:
             self._before = self._row()
-        elif status == ACTING:
-            self._act(self.events[int(contacts.clock[PENDING]) - 1 - len(contacts.place)])
-        elif status == JUMPED:
+        elif status == loop.ACTING:
+            self._act(self.events[int(contacts.clock[arrays.PENDING]) - 1 - len(contacts.place)])
+        elif status == loop.JUMPED:
             self._note_jump()
-        elif status == OVER:
+        elif status == loop.OVER:
             self.ended = True
             self._tell(self._name(), "end")
             self.rows.append(self._before or self._row())
@@ -181,19 +147,19 @@ class EventSteps:
         contacts, switches = self.contacts, self.switches
         release = contacts.events.release
         if len(release):
-            gone = release[contacts.events.gone[release[:, GROUP]] < np.inf]
-            switches.released.update(gone[:, ROW].tolist())
+            gone = release[contacts.events.gone[release[:, users.GROUP]] < np.inf]
+            switches.released.update(gone[:, users.ROW].tolist())
         number, gaps = contacts.number, len(switches.contacts)
         states, way = [], gaps
         for k, contact in enumerate(switches.contacts):
             rough = contact.way is not None
-            closed = STICKS if rough and number[way, CLOSED] > 0.0 else SLIDES
-            states.append(closed if number[k, CLOSED] > 0.0 else OPEN)
+            closed = STICKS if rough and number[way, arrays.CLOSED] > 0.0 else SLIDES
+            states.append(closed if number[k, arrays.CLOSED] > 0.0 else OPEN)
             way += rough
         for joint in number[way:]:
-            resting = STICKS if joint[CLOSED] > 0.0 else SLIDES
-            states.append(RELEASED_FOR_GOOD if joint[RELEASED] != 0.0 else resting)
-        return states, tuple(number[gaps:, SIGN].tolist()), switches.held()
+            resting = STICKS if joint[arrays.CLOSED] > 0.0 else SLIDES
+            states.append(RELEASED_FOR_GOOD if joint[arrays.RELEASED] != 0.0 else resting)
+        return states, tuple(number[gaps:, arrays.SIGN].tolist()), switches.held()
 
     def _note_outputs(self) -> None:
         """Note which rows held at the outputs that were written since the last call."""
@@ -204,10 +170,10 @@ class EventSteps:
     def _note_jump(self) -> None:
         clock, known = self.contacts.clock, len(self.happenings)
         states, senses, self._holding = self._read()
-        which = int(clock[WHICH]) - 1 - len(self.contacts.place)
+        which = int(clock[arrays.WHICH]) - 1 - len(self.contacts.place)
         if which >= 0:
             self._tell(self.events[which].name, "event")
-        if clock[WHICH] != 0.0 or not self.snapshots:
+        if clock[arrays.WHICH] != 0.0 or not self.snapshots:
             self._tell_impacts()
             self._tell_changes(states)
         self._states = states
@@ -219,8 +185,8 @@ class EventSteps:
         self.snapshots.append(self.snapshot())
 
     def _tell_impacts(self) -> None:
-        energy = float(self.contacts.clock[ENERGY])
-        for gap, impulse in self.contacts.log[: int(self.contacts.clock[LOGGED])].tolist():
+        energy = float(self.contacts.clock[arrays.ENERGY])
+        for gap, impulse in self.contacts.log[: int(self.contacts.clock[arrays.LOGGED])].tolist():
             if impulse > 0.0:
                 self._tell(self.switches.contacts[int(gap)].name, "impact", impulse, energy)
                 energy = 0.0
@@ -240,7 +206,7 @@ class EventSteps:
     def _name(self) -> str:
         """Return the name of what happened last, or is to happen."""
         clock, contacts = self.contacts.clock, self.switches.contacts
-        which = int(clock[PENDING] or clock[WHICH]) - 1
+        which = int(clock[arrays.PENDING] or clock[arrays.WHICH]) - 1
         rough = [contact.name for contact in contacts if contact.way is not None]
         names = [contact.name for contact in contacts] + rough + [stick.name for stick in self.ready.sticks]
         return [*names, *(event.name for event in self.events)][which]
@@ -254,7 +220,7 @@ class EventSteps:
             contacts.events.gone[len(self.events) + joint] = moment.t
         state.y[1] = moment.v
         state.y[1, :3] = 0.0
-        contacts.clock[ACTED] = 1.0
+        contacts.clock[arrays.ACTED] = 1.0
 
     # -- points to go on from -----------------------------------------------------------------------------------
 
@@ -298,25 +264,26 @@ class EventSteps:
             self._warn_of_unknown()
         if status in GOES_ON:
             return
-        if status == TOO_MANY:
+        if status == loop.TOO_MANY:
             raise SimulationError(
-                f"{self.packed.name}: more than {AT_ONE_TIME} events at t = {time:.6g} s, the last of "
+                f"{self.packed.name}: more than {loop.AT_ONE_TIME} events at t = {time:.6g} s, the last of "
                 f"'{self._name()}'. Change its restitution or friction, or what an action does there."
             )
-        if status == NOT_SOLVED:
+        if status == loop.NOT_SOLVED:
             if not self.snapshots:
                 refuse_inside(self.ready, self.packed.ws.phi)
             raise jam_at(self.ready, contacts, state)
-        tried = contacts.trial if contacts.clock[FAILURE] != 0.0 else state
+        tried = contacts.trial if contacts.clock[arrays.FAILURE] != 0.0 else state
         if status == CHANCE:
             raise self._chance()
         wheels, before = self.ready.following.wheels, contacts.wheels.before
         wheels.refuse_met(time, state.y[0])
-        wheels.refuse_meeting(float(before.clock[TIME]), before.y, AHEAD * float(contacts.wheels.bounds[LAST_STEP]))
+        ahead = AHEAD * float(contacts.wheels.bounds[arrays.LAST_STEP])
+        wheels.refuse_meeting(float(before.clock[TIME]), before.y, ahead)
         raise refusal(self.run, status, tried)
 
     def _warn_of_unknown(self) -> None:
-        unknown = self.contacts.events.number[:, UNKNOWN]
+        unknown = self.contacts.events.number[:, users.UNKNOWN]
         for event, values in zip(self.events, unknown.tolist(), strict=True):
             if values:
                 self._warn_of(event, int(values))
@@ -327,7 +294,7 @@ class EventSteps:
         if event.name in self._unknown:
             return
         self._unknown.add(event.name)
-        start, length = self.contacts.clock[[START, LENGTH]].tolist()
+        start, length = self.contacts.clock[[arrays.START, arrays.LENGTH]].tolist()
         warn(
             f"{self.packed.name}: event '{event.name}' changes too often to be looked at closely: {count} values "
             f"between t = {start:.6g} and {start + length:.6g} s do not tell how it goes, so that events may be "
@@ -338,8 +305,8 @@ class EventSteps:
     def _chance(self) -> ModelError:
         """Return the error of an event whose function jumps with the sign of rounding."""
         clock, state = self.contacts.clock, self.state
-        there = state if clock[BEYOND] == 1.0 else self.contacts.trial
-        event = self.events[int(clock[WHICH]) - 1 - len(self.contacts.place)]
+        there = state if clock[arrays.BEYOND] == 1.0 else self.contacts.trial
+        event = self.events[int(clock[arrays.WHICH]) - 1 - len(self.contacts.place)]
         q, v, time = there.y[0], there.y[1], float(there.clock[TIME])
         value = value_at(self.packed, event, Moment(self.packed, time, q, v))
         away, near = self.contacts.events.away, self.contacts.events.near

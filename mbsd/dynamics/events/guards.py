@@ -39,7 +39,7 @@ from mbsd.dynamics.events.arrays import (
 from mbsd.dynamics.events.following import advance_to
 from mbsd.dynamics.events.rows import any_held, gaps_of, read_gaps
 from mbsd.dynamics.events.sticking.ways import read_ways
-from mbsd.dynamics.events.users.values import signed
+from mbsd.dynamics.events.users import signed
 from mbsd.dynamics.formulation import along, bends, derivative, measure_gaps, speeds, without_contacts
 from mbsd.dynamics.integrators.advance import NO_LIMIT, copy_state
 from mbsd.dynamics.state import NEXT, REACHED, TIME

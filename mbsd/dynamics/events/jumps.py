@@ -46,14 +46,15 @@ from mbsd.dynamics.events.arrays import (
     TAKING,
     TOUCHING,
 )
-from mbsd.dynamics.events.bounds import AT_LIMIT, BEGINS, CREEP, ROUNDS
-from mbsd.dynamics.events.friction.decisions import (
+from mbsd.dynamics.events.friction import (
+    AT_LIMIT,
+    BEGINS,
     begin_touched,
     find_friction,
     note_met,
     slide_or_stick,
+    solve_with_friction,
 )
-from mbsd.dynamics.events.friction.pushes import solve_with_friction
 from mbsd.dynamics.events.pushes import find_compliance, solve_pushes
 from mbsd.dynamics.events.rows import (
     find_rates,
@@ -67,6 +68,11 @@ from mbsd.dynamics.events.rows import (
 )
 from mbsd.dynamics.formulation import along, derivative, push
 from mbsd.dynamics.state import TIME
+
+ROUNDS = 200
+"""Rounds of an impact; after so many, all closed contacts are solved at once without rebound."""
+CREEP = 1e-6
+"""Part of the rates that count as zero, beyond which a contact that carries nothing still closes."""
 
 CLOSE = 1e2
 """Gaps that are closed with another, in those that count as zero."""

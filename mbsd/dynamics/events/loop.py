@@ -45,19 +45,29 @@ from mbsd.dynamics.events.arrays import (
     Stepping,
 )
 from mbsd.dynamics.events.following import advance_to
-from mbsd.dynamics.events.friction.decisions import one_by_one
+from mbsd.dynamics.events.friction import one_by_one
 from mbsd.dynamics.events.guards import fit
 from mbsd.dynamics.events.jumps import resolve
 from mbsd.dynamics.events.rows import any_held, hold_rows
 from mbsd.dynamics.events.search import event_time, first_met
 from mbsd.dynamics.events.sticking.jumps import resolve_friction
 from mbsd.dynamics.events.sticking.ways import share_here, share_outputs
-from mbsd.dynamics.events.user_actions import ACTS, ENDED, HAPPENED, PASSED, finish_action, happen, hold_joints
-from mbsd.dynamics.events.users.values import begin_sides, find_sides, first_reached
+from mbsd.dynamics.events.users import (
+    ACTS,
+    ENDED,
+    HAPPENED,
+    PASSED,
+    begin_sides,
+    find_sides,
+    finish_action,
+    first_reached,
+    happen,
+    hold_joints,
+)
 from mbsd.dynamics.formulation import begin_run, measure, without_contacts
 from mbsd.dynamics.independent.arrays import Embedding
 from mbsd.dynamics.integrators.advance import NO_LIMIT, copy_state, cross
-from mbsd.dynamics.repeated_rows.exchange import hold_independent, look
+from mbsd.dynamics.repeated_rows import hold_independent, look
 from mbsd.dynamics.state import NEXT, PAUSED, REACHED, STARTED, STEP, TIME, record_here
 
 NOT_SOLVED = -7

@@ -14,9 +14,11 @@ from __future__ import annotations
 
 from mbsd.compiling.jit import apart, inlined, internal
 from mbsd.dynamics.events.arrays import LENGTH, MOST_LOOKS, START
-from mbsd.dynamics.events.bounds import HALVINGS
 from mbsd.dynamics.events.guards import of_motion, on_quintic
 from mbsd.dynamics.integrators.root_search import narrowed, next_part
+
+HALVINGS = 40
+"""How close to a bounce its return is looked for: this many halvings of a part of a step."""
 
 CLOSE = 1e-14
 MOST_ROOTS = 80

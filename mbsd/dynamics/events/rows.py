@@ -19,9 +19,11 @@ from mbsd.dynamics.events.arrays import (
     SIGN,
     TAKING,
 )
-from mbsd.dynamics.events.bounds import DEPENDENT
 from mbsd.dynamics.formulation import along, measure_gaps
 from mbsd.equations.system import ZERO
+
+DEPENDENT = 1e-9
+"""Part of its compliance that the rows before must leave of a row."""
 
 
 @apart

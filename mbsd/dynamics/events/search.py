@@ -4,8 +4,9 @@ Interior samples of the step's quintic also find scalars that dip below zero and
 at the start of the step (a bounce) and return within it. What dips between two samples is found by its minimum
 (roots.py). A gap that begins within rounding of zero, or an error of the integrator below, and opens by its rate and
 its acceleration, does not close there: a multistep method begins anew with steps of order one, whose errors in places
-are above the gap while it is so young. A scalar that the quintic shows below zero is looked at again along the motion
-itself, and the root is one of the motion.
+are above the gap while it is so young. The same holds of the rate of a clutch and its acceleration, as places of a
+method of order two do not go with its rates. A scalar that the quintic shows below zero is looked at again along the
+motion itself, and the root is one of the motion.
 
 k: a row of Contacts, whose scalar guards.py says; behind the last row come the events of the user.
 """
@@ -16,6 +17,7 @@ from mbsd.compiling.jit import apart, internal, lazy
 from mbsd.dynamics.events.arrays import (
     BEYOND,
     CLOSED,
+    CLUTCH,
     FAILURE,
     GAP,
     KIND,
@@ -32,7 +34,6 @@ from mbsd.dynamics.events.arrays import (
     WHERE,
     WHICH,
 )
-from mbsd.dynamics.events.bounds import LESS
 from mbsd.dynamics.events.guards import (
     at_state,
     beyond_time,
@@ -44,11 +45,13 @@ from mbsd.dynamics.events.guards import (
 from mbsd.dynamics.events.roots import MOST_ROOTS, SAMPLES, dips_before, may_dip, root_between
 from mbsd.dynamics.events.rows import gaps_of, read_gaps
 from mbsd.dynamics.events.user_search import first_event
-from mbsd.dynamics.events.users.arrays import SIDE
-from mbsd.dynamics.events.users.values import rounding_of
+from mbsd.dynamics.events.users import SIDE, rounding_of
 from mbsd.dynamics.formulation import along, derivative
 from mbsd.dynamics.integrators.root_search import narrowed, next_part
 from mbsd.dynamics.state import TIME
+
+LESS = 1e-3
+"""Part of NEAR by which a state is changed to tell a jump from a slope."""
 
 CHANCE = 15
 """Status of rows in which rounding decides whether an event happens."""
@@ -69,6 +72,7 @@ def _leaves(dyn, scratch, contacts, k):
     """Return True if a gap rises away from zero at the begin of the step, by its rates and its second derivative.
 
     The latter may be negative by the rounding of forces: where a contact has just opened nothing else is left of it.
+    Of a clutch the scalar is the rate itself.
     """
     row = contacts.place[k, ROW]
     rest = -contacts.number[k, REST]
@@ -78,7 +82,7 @@ def _leaves(dyn, scratch, contacts, k):
         return False
     t = stand_at(dyn, contacts, 0.0)
     derivative(dyn, scratch, t, contacts.pose, contacts.rates, contacts.lam)
-    if not along(dyn, scratch, row, contacts.pose[1]) > rest:
+    if contacts.place[k, KIND] == GAP and not along(dyn, scratch, row, contacts.pose[1]) > rest:
         return False
     least = -ROUNDING * contacts.clock[LOAD] * contacts.compliance[k, k]
     return along(dyn, scratch, row, contacts.rates[1]) - scratch.ws.right[0, row] > least
@@ -97,8 +101,8 @@ def _falls(dyn, scratch, contacts, k, until):
     where, negative = root_between(
         dyn, scratch, contacts, k, PARTS[first], PARTS[first + 1], values[first], values[first + 1], still, still
     )
-    gap = contacts.place[k, KIND] == GAP and contacts.number[k, CLOSED] == 0.0
-    if where == 0.0 and gap and _leaves(dyn, scratch, contacts, k):
+    is_open = contacts.place[k, KIND] in (GAP, CLUTCH) and contacts.number[k, CLOSED] == 0.0
+    if where == 0.0 and is_open and _leaves(dyn, scratch, contacts, k):
         opened = 0
         while opened < SAMPLES and not values[opened] > still:
             opened += 1

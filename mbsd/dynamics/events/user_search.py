@@ -9,14 +9,27 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from mbsd.compiling.jit import apart, internal, lazy
 from mbsd.dynamics.events.arrays import BEYOND, LENGTH, PARTS, WHERE
-from mbsd.dynamics.events.bounds import FAR, MOST_VALUES, NARROWEST, PER_SHORTEST, ROUGH, ROUGH_HALVES, TRIED
 from mbsd.dynamics.events.guards import on_quintic
 from mbsd.dynamics.events.roots import dips_before, root_between
-from mbsd.dynamics.events.users.arrays import SHORTEST, SIDE, UNKNOWN
-from mbsd.dynamics.events.users.values import rounding_of
+from mbsd.dynamics.events.users import SHORTEST, SIDE, UNKNOWN, rounding_of
 from mbsd.dynamics.state import TIME
+
+TRIED = np.array([0.1337, 0.5437])
+"""Parts of a step at which the polynomial through a function of the user is tried; no simple fractions, which a period
+might share."""
+ROUGH, ROUGH_HALVES = 0.01, 0.05
+"""Fractions of what the function changes by in a step: what is missed by more is not known; at first, and in halves."""
+PER_SHORTEST = 2.0
+"""Looks at the shortest thing in a function."""
+FAR = 10.0
+"""Times what a function changes by in a step: from there it does not come to zero, and changes may be rounding."""
+NARROWEST = 1.0 / 2048
+MOST_VALUES = 512
+"""Values in one step."""
 
 SAMPLES = 6
 

@@ -2,7 +2,7 @@
 
 z has f coordinates. C = f columns, one more (of the time) where drivers are; each column of ``rate`` is the rate of all
 bodies for one of them, and a last one holds the convective acceleration c. Columns that closed forms use are named in
-mbsd/kinematics/groups/groups.py and carrying/columns.py, entries of the arrays of blocks (block.py) below.
+mbsd/kinematics/groups/groups.py and carrying/columns.py, entries of the arrays of blocks in block.py.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Embedding(NamedTuple):
     number: Any
     """(g, 21) Groups.row."""
     block: Any
-    """Integers of blocks; mbsd/dynamics/runs/embedding.py."""
+    """Integers of blocks; mbsd/dynamics/independent/block.py."""
     block_number: Any
     """Their numbers."""
     numbers: Any
@@ -70,7 +70,7 @@ class EmbeddingScratch(NamedTuple):
     drive: Any
     """(drivers + 1, 3)"""
     block_work: Any
-    """Scratch of blocks; mbsd/dynamics/runs/embedding.py."""
+    """Scratch of blocks; mbsd/dynamics/independent/block.py."""
     force: Any
     """(3 nb,) forces beside the weight, zero where there are none."""
     watch: Any
@@ -78,9 +78,9 @@ class EmbeddingScratch(NamedTuple):
     before: Any
     """(3, 3 nb) q, v, a of a pose before an unclear one."""
     joined_body: Any
-    """(2, nb, 4) of poses beside an unclear one: place and turn, and their errors."""
+    """(3, nb, 4) of poses beside an unclear one: place and turn, their errors, and those of the pose itself."""
     joined_rate: Any
-    """(2, nb, 3 (C + 1)) the same of ``rate``."""
+    """(3, nb, 3 (C + 1)) the same of ``rate``; the last part keeps rows of ``base`` and ``rate``."""
     multipliers: Any
     """(0,)"""
     state: Any
@@ -102,49 +102,3 @@ class EmbeddingScratch(NamedTuple):
     write, loads wait for stores that are not theirs (4K aliasing), and a pendulum takes three times as long. Measure
     again (``python -m benchmarks calls``) where this tuple or Embedding gets longer or shorter.
     """
-
-
-(
-    HEADS,
-    KEPT_SIZE,
-    Q,
-    KEPT_Q,
-    UNKNOWN_AT,
-    DETERMINANT_AT,
-    SEEN_AT,
-    V,
-    A,
-    TURN_AT,
-    UNKNOWN_WORK,
-    JAC,
-    OUT,
-    SOLUTION,
-    POINT,
-    SCRATCH,
-    WORK,
-) = range(17)
-"""Entries of ``block``: where its heads begin, and places in the scratch. What the last accepted pose leaves is
-``KEPT_SIZE`` numbers from ``KEPT_Q`` on, a copy of those from ``Q`` on: poses q (3 nb,), then for each unknown its
-value, convective acceleration and columns of B, then the determinant of each block. From ``SEEN_AT`` on stand the
-coordinates and the time at which each block was evaluated last."""
-HEAD = 9
-"""Length of a head."""
-BODIES, EQUATIONS, NEAR_COUNT, TREE, ROWS, NEAR_AT, FRAME, ARMS, FIRST = range(9)
-"""Entries of a head: bodies, equations, known bodies beside; where its lines begin in ``block`` and, of FRAME and ARMS,
-in ``block_number``; its first unknown."""
-TREE_WIDTH, ROWS_WIDTH, FRAME_WIDTH, ARMS_WIDTH = 5, 9, 7, 9
-
-
-class Past(NamedTuple):
-    """Memory of one block with n unknowns and C columns of B."""
-
-    q: Any
-    """(3 nb,) the last accepted pose."""
-    here: Any
-    """(n, C + 2) unknowns, convective accelerations and columns: of the evaluation before, then of the present one."""
-    kept: Any
-    """The same at the last accepted pose."""
-    seen: Any
-    """(C + 1,) coordinates and time at which ``here`` was evaluated."""
-    determinant: Any
-    """The determinant of G at the last accepted pose; 0 at the first."""

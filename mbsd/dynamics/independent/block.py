@@ -8,45 +8,22 @@
 The pose is doubted where Newton-Raphson does not converge, the prediction from the last accepted pose misses by a large
 part of the way, or the determinant of G changes sign or shrinks fast since then: then the step is taken again with
 another length. Equations are those of mbsd/kinematics/groups/newton/.
+
+Tables of blocks, whose bodies Newton-Raphson places, are those of mbsd/kinematics/groups/blocks.py one after
+the other, in one array of integers and one of numbers, and all their scratch is one array. ``block`` begins with where
+each begins.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
 from mbsd.compiling.jit import inlined, lazy
 from mbsd.compiling.views import table
-from mbsd.dynamics.independent.arrays import (
-    ARMS,
-    ARMS_WIDTH,
-    BODIES,
-    DETERMINANT_AT,
-    EQUATIONS,
-    FIRST,
-    FRAME,
-    FRAME_WIDTH,
-    HEAD,
-    HEADS,
-    JAC,
-    KEPT_Q,
-    NEAR_AT,
-    NEAR_COUNT,
-    OUT,
-    POINT,
-    ROWS,
-    ROWS_WIDTH,
-    SCRATCH,
-    SEEN_AT,
-    SOLUTION,
-    TREE,
-    TREE_WIDTH,
-    TURN_AT,
-    UNKNOWN_AT,
-    UNKNOWN_WORK,
-    A,
-    Past,
-    Q,
-    V,
-)
-from mbsd.kinematics.groups.blocks import BODY, LARGEST, MOTION, SIZE
+from mbsd.kinematics.groups.blocks import ARM, BODY, LARGEST, MOTION, SIZE
 from mbsd.kinematics.groups.carrying.branch import angle_of, predicted
 from mbsd.kinematics.groups.carrying.columns import BASE, COS, INERTIA, MASS, OMEGA, SIN, SPEED, VALUE, X, Y
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
@@ -57,6 +34,40 @@ from mbsd.kinematics.groups.newton.matrix import extent, held, solve
 from mbsd.kinematics.groups.newton.records import Block, Motion, Work
 from mbsd.kinematics.groups.newton.rows import bend_of, move, read_unknowns
 from mbsd.kinematics.newton import ROUNDING, SHRINKS, SUSPICIOUS
+
+if TYPE_CHECKING:
+    from mbsd.kinematics.groups.block_tables import Tables
+
+
+(
+    HEADS, KEPT_SIZE, Q, KEPT_Q, UNKNOWN_AT, DETERMINANT_AT, SEEN_AT, V, A, TURN_AT, UNKNOWN_WORK, JAC, OUT, SOLUTION,
+    POINT, SCRATCH, WORK,
+) = range(17)  # fmt: skip
+"""Entries of ``block``: where its heads begin, and places in the scratch. What the last accepted pose leaves is
+``KEPT_SIZE`` numbers from ``KEPT_Q`` on, a copy of those from ``Q`` on: poses q (3 nb,), then for each unknown its
+value, convective acceleration and columns of B, then the determinant of each block. From ``SEEN_AT`` on stand the
+coordinates and the time at which each block was evaluated last."""
+HEAD = 9
+"""Length of a head."""
+BODIES, EQUATIONS, NEAR_COUNT, TREE, ROWS, NEAR_AT, FRAME, ARMS, FIRST = range(9)
+"""Entries of a head: bodies, equations, known bodies beside; where its lines begin in ``block`` and, of FRAME and ARMS,
+in ``block_number``; its first unknown."""
+TREE_WIDTH, ROWS_WIDTH, FRAME_WIDTH, ARMS_WIDTH = 5, 9, 7, 9
+
+
+class Past(NamedTuple):
+    """Memory of one block with n unknowns and C columns of B."""
+
+    q: Any
+    """(3 nb,) the last accepted pose."""
+    here: Any
+    """(n, C + 2) unknowns, convective accelerations and columns: of the evaluation before, then of the present one."""
+    kept: Any
+    """The same at the last accepted pose."""
+    seen: Any
+    """(C + 1,) coordinates and time at which ``here`` was evaluated."""
+    determinant: Any
+    """The determinant of G at the last accepted pose; 0 at the first."""
 
 
 @fused
@@ -285,3 +296,62 @@ def embed_block(dyn, scratch, k):
     scratch.sums[0] = total
     scratch.sums[1] = push
     return SOLVED
+
+
+def block_arrays(blocks: Sequence[Tables], bodies: int, columns: int) -> tuple[np.ndarray, np.ndarray]:
+    """``block`` and ``block_number`` of Embedding; ``columns``: of B."""
+    unknowns = sum(len(tables.equations) for tables in blocks)
+    most = max((len(tables.tree) for tables in blocks), default=0)
+    kept = 3 * bodies + (columns + 2) * unknowns + len(blocks) if blocks else 0
+    start = np.zeros(WORK + 1, np.int64)
+    start[HEADS], start[KEPT_SIZE] = WORK + 1, kept
+    start[KEPT_Q] = kept
+    start[UNKNOWN_AT], start[DETERMINANT_AT] = 3 * bodies, 3 * bodies + (columns + 2) * unknowns
+    sizes = [
+        (columns + 1) * len(blocks),
+        3 * bodies,
+        3 * bodies,
+        2 * bodies,
+        3 * LARGEST,
+        6 * LARGEST,
+        10 * LARGEST,
+        2 * LARGEST,
+        32,
+    ]
+    sizes.append(LARGEST * LARGEST + 3 * LARGEST * most + 16)
+    start[SEEN_AT : WORK + 1] = 2 * kept + np.cumsum([0, *sizes])
+    if not blocks:
+        start[WORK] = 0
+    integers, numbers = [*start], list[float]()
+    heads = np.zeros((len(blocks), HEAD), np.int64)
+    integers += [0] * heads.size
+    first = 0
+    for head, tables in zip(heads, blocks, strict=True):
+        near = sorted(set(tables.near) | _arms(tables))
+        head[[BODIES, EQUATIONS, NEAR_COUNT, FIRST]] = len(tables.tree), len(tables.equations), len(near), first
+        first += len(tables.equations)
+        for entry, lines in ((TREE, tables.tree), (ROWS, tables.equations)):
+            head[entry] = len(integers)
+            integers += [value for line in lines for value in line]
+        head[NEAR_AT] = len(integers)
+        integers += near
+        for entry, lines in ((FRAME, tables.frame), (ARMS, tables.arms)):
+            head[entry] = len(numbers)
+            numbers += [value for line in lines for value in line]
+    block = np.array(integers, np.int64)
+    block[WORK + 1 : WORK + 1 + heads.size] = heads.ravel()
+    return block, np.array(numbers, float)
+
+
+def block_work(block: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """The scratch of one run that begins at q (3 nb,)."""
+    work = np.zeros(int(block[WORK]))
+    if block[KEPT_SIZE]:
+        work[block[KEPT_Q] : block[KEPT_Q] + len(q)] = q
+        work[block[TURN_AT]] = 1.0
+    return work
+
+
+def _arms(tables: Tables) -> set[int]:
+    """Known bodies whose turns an equation counts."""
+    return {line[ARM] for line in tables.equations} - {line[0] for line in tables.tree} - {0}

@@ -138,11 +138,10 @@ class _Trains:
     """Gears, belts and locks, of which each gives one more angle as a sum of known ones."""
 
     def __init__(self, packed: Packed, q: np.ndarray, joints: list[int]) -> None:
-        first = packed.first_row
-        self.row_of = {joint: first[joint] for joint in joints}
+        self.row_of = {joint: packed.rows_of(joint).start for joint in joints}
         self.trains = Trains(packed, q) if joints else None
         self.possible = self.trains is None or all(
-            first[joint + 1] == row + 1 and row in self.trains.rows for joint, row in self.row_of.items()
+            len(packed.rows_of(joint)) == 1 and row in self.trains.rows for joint, row in self.row_of.items()
         )
 
     def add(self, plan: Plan) -> bool:
@@ -204,18 +203,18 @@ def _complete(
 def _with_block(choice: Choice) -> Choice | None:
     """With the smallest block that the joints left fix, or None where they fix none."""
     plan = choice.plan
-    packed, first = plan.packed, plan.packed.first_row
+    packed = plan.packed
     if len(plan.known) == len(plan.links):
         return None
     open_joints = [joint for joint in range(len(packed.joints)) if joint not in plan.used]
-    left = [row for joint in open_joints for row in range(first[joint], first[joint + 1])]
+    left = [row for joint in open_joints for row in packed.rows_of(joint)]
     inner = [row for row in left if any(int(body) not in plan.known for body in packed.system.row_body[row])]
     members = fixed_bodies(packed, plan.known, inner, (sample_jacobians(packed) != 0.0).any(axis=0))
     block = None if members is None else hanging(plan, members, inner)
     tables = None if block is None else tables_of(plan, block)
     if block is None or tables is None:
         return None
-    plan.used |= {joint for joint in open_joints if {*range(first[joint], first[joint + 1])} <= {*block.rows}}
+    plan.used |= {joint for joint in open_joints if {*packed.rows_of(joint)} <= {*block.rows}}
     bodies = [body for body, _, _ in block.tree]
     plan.take((BLOCK, (bodies[0], -1, 0, 0), len(choice.blocks), []), bodies)
     return replace(choice, blocks=(*choice.blocks, tables))

@@ -19,7 +19,8 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, inlined, internal, kernel, lazy, merged
-from mbsd.dynamics.independent.arrays import KEPT_Q, KEPT_SIZE, LIMIT, SENSITIVITY, Q
+from mbsd.dynamics.independent.arrays import LIMIT, SENSITIVITY
+from mbsd.dynamics.independent.block import KEPT_Q, KEPT_SIZE, Q
 from mbsd.dynamics.independent.groups import bridge, embed_groups
 from mbsd.dynamics.state import NEXT, TIME, WORK
 from mbsd.equations.laws import evaluate_laws

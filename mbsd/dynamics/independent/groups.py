@@ -11,11 +11,18 @@ and back along the motion:
     X(z) = sum W_i (X(z + x_i A z' / w) + X(z - x_i A z' / w)),   x = 1, 1.3, 1.6, 1.9, 2.2, 2.5,   A = 0.25 rad
 
 with w the rate (rad/s) of the body that turns fastest. This holds for polynomials of degree 11. The same sum without
-the outermost two tells the error. Where it is not small, as where links that nearly close keep the two poses apart, A
-is halved; then the closed form itself stands.
+the outermost two tells the error. Where it is not small, A is halved.
+
+The motion of the whole is no such polynomial where other links nearly close and keep their two poses apart. Then each
+group is solved alone, in order: by its closed form where its two poses are apart, else by the same sum over poses
+beside, in which the bodies that it stands on have turned about their instantaneous centres, and their rates with them.
+Any smooth motion through the pose serves, for only what it is at the pose is asked for; this one passes the change
+point of links whose pivots rest on ground or on one body. Where it fails, too, the closed form stands.
 """
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 
@@ -23,11 +30,25 @@ from mbsd.compiling.jit import inlined, internal, lazy
 from mbsd.dynamics.independent.block import embed_block, with_body
 from mbsd.equations.laws import evaluate_laws
 from mbsd.kinematics.groups.blocks import BLOCK, TRAIN
-from mbsd.kinematics.groups.carrying.branch import FLOOR
+from mbsd.kinematics.groups.carrying.branch import FLOOR, angle_of
 from mbsd.kinematics.groups.carrying.cases import PerCoordinate
-from mbsd.kinematics.groups.carrying.columns import AVOID, COS, SIN, SPEED, TURNS, VALUE
+from mbsd.kinematics.groups.carrying.columns import (
+    AVOID,
+    BASE,
+    BEND,
+    COS,
+    OMEGA,
+    SIN,
+    SINE,
+    SPEED,
+    THETA,
+    TURNS,
+    VALUE,
+    X,
+    Y,
+)
 from mbsd.kinematics.groups.carrying.rates import SOLVED
-from mbsd.kinematics.groups.groups import FIRST, KIND, LAW, SECOND
+from mbsd.kinematics.groups.groups import FIRST, K1, K2, KIND, LAW, SECOND
 from mbsd.kinematics.groups.kinds.train import embed_train
 from mbsd.kinematics.groups.solve_group import solve_group
 
@@ -83,24 +104,65 @@ CLOSE, CLOSE_RATE = 1e-10, 1e-9
 """Errors allowed of cosines and sines, and of rates of turning, as a part of w."""
 KEPT = SIN + 1
 """Columns of EmbeddingScratch.body that are continued."""
+SLIGHT = 1e-8
+"""Turn (rad) below which a body moves straight on."""
+
+
+@internal
+def _copy(to, row, count):
+    """Copy the first ``count`` numbers of a row."""
+    for c in range(count):
+        to[c] = row[c]
+
+
+@internal
+def _add(to, weight, row, count):
+    """Add ``weight`` times the first ``count`` numbers of a row."""
+    for c in range(count):
+        to[c] += weight * row[c]
+
+
+@internal
+def _clear(joined_body, joined_rate, b):
+    """Begin the sums of body b."""
+    for part in range(2):
+        for c in range(KEPT):
+            joined_body[part, b, c] = 0.0
+        for c in range(joined_rate.shape[2]):
+            joined_rate[part, b, c] = 0.0
+
+
+@internal
+def _sum(scratch, b, i):
+    """Add pair i of poses beside to the sums of body b."""
+    columns = scratch.rate.shape[1]
+    _add(scratch.joined_body[0, b], WEIGHTS[i], scratch.body[b], KEPT)
+    _add(scratch.joined_body[1, b], ERROR_WEIGHTS[i], scratch.body[b], KEPT)
+    _add(scratch.joined_rate[0, b], WEIGHTS[i], scratch.rate[b], columns)
+    _add(scratch.joined_rate[1, b], ERROR_WEIGHTS[i], scratch.rate[b], columns)
+
+
+@internal
+def _velocity(rate, coordinate, b, c):
+    """Return rate ``c`` of body b along the motion: x, y (m) or angle (rad), by the first unit of the way."""
+    columns = coordinate.shape[0] - 1
+    total = 0.0
+    for j in range(columns):
+        total += rate[b, 3 * j + c] * (coordinate[j, SPEED] if columns > 1 else 1.0)
+    return total
 
 
 @internal
 def _joined(dyn, scratch, t, way, fastest):
     """Fill joined_body and joined_rate from poses beside; returns whether all are clear and agree."""
     body = scratch.body
-    rate = scratch.rate
     coordinate = scratch.coordinate
     drive = scratch.drive
     joined_body = scratch.joined_body
     joined_rate = scratch.joined_rate
     columns = coordinate.shape[0] - 1
-    for part in range(2):
-        for b in range(1, body.shape[0]):
-            for c in range(KEPT):
-                joined_body[part, b, c] = 0.0
-            for c in range(rate.shape[1]):
-                joined_rate[part, b, c] = 0.0
+    for b in range(1, body.shape[0]):
+        _clear(joined_body, joined_rate, b)
     for i in range(APART.shape[0]):
         for side in range(2):
             ahead = (1.0 - 2.0 * side) * APART[i] * way / fastest
@@ -114,21 +176,151 @@ def _joined(dyn, scratch, t, way, fastest):
             if status != SOLVED:
                 return False
             for b in range(1, body.shape[0]):
-                for c in range(KEPT):
-                    joined_body[0, b, c] += WEIGHTS[i] * body[b, c]
-                    joined_body[1, b, c] += ERROR_WEIGHTS[i] * body[b, c]
-                for c in range(rate.shape[1]):
-                    joined_rate[0, b, c] += WEIGHTS[i] * rate[b, c]
-                    joined_rate[1, b, c] += ERROR_WEIGHTS[i] * rate[b, c]
+                _sum(scratch, b, i)
     for b in range(1, body.shape[0]):
         if not abs(joined_body[1, b, COS]) + abs(joined_body[1, b, SIN]) <= CLOSE:
             return False
-        turning = 0.0
-        for j in range(columns):
-            turning += joined_rate[1, b, 3 * j + 2] * (coordinate[j, SPEED] if columns > 1 else 1.0)
-        if not abs(turning) <= CLOSE_RATE * fastest:
+        if not abs(_velocity(joined_rate[1], coordinate, b, 2)) <= CLOSE_RATE * fastest:
             return False
     return True
+
+
+@internal
+def _turn_about_centre(scratch, b, ahead):
+    """Turn body b and its rates about its instantaneous centre, ``ahead`` along the motion."""
+    body = scratch.body
+    rate = scratch.rate[b]
+    vx = _velocity(scratch.rate, scratch.coordinate, b, 0)
+    vy = _velocity(scratch.rate, scratch.coordinate, b, 1)
+    omega = _velocity(scratch.rate, scratch.coordinate, b, 2)
+    c = math.cos(omega * ahead)
+    s = math.sin(omega * ahead)
+    along = ahead
+    aside = 0.0
+    if abs(omega * ahead) > SLIGHT:
+        along = s / omega
+        aside = (1.0 - c) / omega
+    body[b, X] += along * vx - aside * vy
+    body[b, Y] += along * vy + aside * vx
+    cos = body[b, COS]
+    body[b, COS] = c * cos - s * body[b, SIN]
+    body[b, SIN] = s * cos + c * body[b, SIN]
+    for k in range(0, rate.shape[0], 3):
+        x = rate[k]
+        rate[k] = c * x - s * rate[k + 1]
+        rate[k + 1] = s * x + c * rate[k + 1]
+
+
+@internal
+def _solve(dyn, scratch, e):
+    """Solve group e, of any kind but a block, by its closed form; returns SOLVED or DOUBTED."""
+    if dyn.group[e, KIND] == TRAIN:
+        return embed_train(dyn.group[e], dyn.number[e], scratch.body, scratch.rate, scratch.base, scratch.coordinate)
+    case = PerCoordinate(
+        dyn.group, dyn.number, scratch.body, scratch.rate, scratch.base, scratch.coordinate, scratch.drive
+    )
+    return solve_group(case, e)
+
+
+@internal
+def _joined_alone(dyn, scratch, e, way):
+    """Fill joined_body and joined_rate of the bodies of group e; returns whether all poses are clear and agree.
+
+    ``way``: of the outermost poses over 2.5, in units of the coordinate, or s of several.
+    """
+    bodies = dyn.group[e]
+    body = scratch.body
+    coordinate = scratch.coordinate
+    joined_body = scratch.joined_body
+    joined_rate = scratch.joined_rate
+    columns = coordinate.shape[0] - 1
+    for b in bodies[: SECOND + 1]:
+        if b > 0:
+            _clear(joined_body, joined_rate, b)
+    for i in range(APART.shape[0]):
+        for side in range(2):
+            ahead = (1.0 - 2.0 * side) * APART[i] * way
+            for j in range(columns):
+                coordinate[j, VALUE] += ahead * (coordinate[j, SPEED] if columns > 1 else 1.0)
+            for k in range(K1, K2 + 1):
+                if bodies[k] > 0 and (k == K1 or bodies[k] != bodies[K1]):
+                    _copy(joined_body[2, bodies[k]], body[bodies[k]], KEPT)
+                    _copy(joined_rate[2, bodies[k]], scratch.rate[bodies[k]], scratch.rate.shape[1])
+                    _turn_about_centre(scratch, bodies[k], ahead)
+            status = _solve(dyn, scratch, e)
+            for b in bodies[K1 : K2 + 1]:
+                if b > 0:
+                    _copy(body[b], joined_body[2, b], KEPT)
+                    _copy(scratch.rate[b], joined_rate[2, b], scratch.rate.shape[1])
+            for j in range(columns):
+                coordinate[j, VALUE] -= ahead * (coordinate[j, SPEED] if columns > 1 else 1.0)
+            if status != SOLVED:
+                return False
+            for b in bodies[: SECOND + 1]:
+                if b > 0:
+                    _sum(scratch, b, i)
+    for b in bodies[: SECOND + 1]:
+        if b > 0:
+            if not abs(joined_body[1, b, COS]) + abs(joined_body[1, b, SIN]) <= CLOSE:
+                return False
+            if not abs(_velocity(joined_rate[1], coordinate, b, 2)) * way <= CLOSE_RATE:
+                return False
+    return True
+
+
+@internal
+def _solve_alone(dyn, scratch, e, usual):
+    """Solve group e, from poses beside if its squared sine is below ``usual``; returns SOLVED or DOUBTED."""
+    status = _solve(dyn, scratch, e)
+    sine = dyn.number[e, SINE]
+    if not sine < usual or (status != SOLVED and not abs(sine) <= FLOOR):
+        return status
+    bodies = dyn.group[e]
+    base = scratch.base
+    coordinate = scratch.coordinate
+    columns = coordinate.shape[0] - 1
+    _copy(scratch.joined_rate[2, 0], coordinate[:, BASE], columns)
+    for b in bodies[: SECOND + 1]:
+        if b > 0:
+            _copy(scratch.joined_rate[2, b], base[b], TURNS + columns)
+            if status == SOLVED:  # poses beside are predicted from this very pose
+                base[b, THETA] = angle_of(scratch.body, base, coordinate, b)
+                base[b, BEND] = 0.0
+                for j in range(columns):
+                    base[b, TURNS + j] = scratch.rate[b, 3 * j + 2]
+    if status == SOLVED:
+        _copy(coordinate[:, BASE], coordinate[:, VALUE], columns)
+    fastest = 0.0
+    for b in bodies[: K2 + 1]:
+        if b > 0:
+            turning = 0.0
+            for j in range(columns):
+                turning += base[b, TURNS + j] * (coordinate[j, SPEED] if columns > 1 else 1.0)
+            fastest = max(fastest, abs(turning))
+    dyn.number[e, AVOID] = usual
+    joined = False
+    way = WAY
+    for _ in range(HALVINGS):
+        joined = fastest > 0.0 and _joined_alone(dyn, scratch, e, way / fastest)
+        if joined:
+            break
+        way *= 0.5
+    dyn.number[e, AVOID] = FLOOR
+    _copy(coordinate[:, BASE], scratch.joined_rate[2, 0], columns)
+    for b in bodies[: SECOND + 1]:
+        if b > 0:
+            _copy(base[b], scratch.joined_rate[2, b], TURNS + columns)
+    if not joined:
+        return _solve(dyn, scratch, e)
+    for b in bodies[: SECOND + 1]:
+        if b > 0:
+            _copy(scratch.body[b], scratch.joined_body[0, b], KEPT)
+            _copy(scratch.rate[b], scratch.joined_rate[0, b], scratch.rate.shape[1])
+            turning = 0.0
+            for j in range(columns):
+                turning += scratch.rate[b, 3 * j + 2] * coordinate[j, SPEED]
+            scratch.body[b, OMEGA] = turning
+    return SOLVED
 
 
 @lazy(int)
@@ -160,22 +352,20 @@ def bridge(dyn, scratch, t):
             evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
     if not joined:
         number = dyn.number
-        usual = 0.0
         for e in range(number.shape[0]):
             usual = number[e, AVOID]
             number[e, AVOID] = FLOOR
-        status = embed_groups(dyn, scratch)
-        for e in range(number.shape[0]):
+            status = _solve_alone(dyn, scratch, e, usual)
             number[e, AVOID] = usual
-        return status
+            if status != SOLVED:
+                return status
     total = 0.0
     push = 0.0
     single = rate.shape[1] == 6
     for b in range(1, body.shape[0]):
-        for c in range(KEPT):
-            body[b, c] = scratch.joined_body[0, b, c]
-        for c in range(rate.shape[1]):
-            rate[b, c] = scratch.joined_rate[0, b, c]
+        if joined:
+            _copy(body[b], scratch.joined_body[0, b], KEPT)
+            _copy(rate[b], scratch.joined_rate[0, b], rate.shape[1])
         if single:
             total, push = with_body(body, rate, dyn.gravity, b, total, push)
     scratch.sums[0] = total

@@ -9,11 +9,10 @@ from __future__ import annotations
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import inlined, internal, lazy
 from mbsd.dynamics.independent.arrays import Embedding
-from mbsd.dynamics.integrators import generalized_alpha, rattle, rk4
+from mbsd.dynamics.integrators import generalized_alpha, radau, rattle, rk4
 from mbsd.dynamics.integrators.dop853.loop import DOP853
 from mbsd.dynamics.integrators.dop853.loop import advance as advance_dop853
 from mbsd.dynamics.integrators.kind import Integrator
-from mbsd.dynamics.integrators.radau import loop as radau
 from mbsd.dynamics.state import ACCEPTED, PAUSED, REACHED, STARTED, STEP, TIME
 
 INTEGRATORS = (

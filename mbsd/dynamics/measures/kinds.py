@@ -61,7 +61,7 @@ class Measure:
         return None
 
     def known(self, t: np.ndarray, along: Mapping[str, np.ndarray]) -> np.ndarray:
-        """(n,) whether the outputs so far tell it, of which these are the last; see batch/early.py."""
+        """(n,) whether the outputs so far tell it, of which these are the last; see batch/loop.py."""
         return np.zeros(len(along[self.quantity]), bool)
 
     def needed(self, t: np.ndarray) -> np.ndarray:

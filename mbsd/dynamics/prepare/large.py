@@ -45,7 +45,7 @@ from mbsd.kinematics.pose.mobility import joint_mobility
 from mbsd.kinematics.pose.open_loops import why_open
 from mbsd.kinematics.pose.phases import active_rows, let_phases_go, refuse_impossible, take_decided, take_phases
 from mbsd.model.mechanism import Model
-from mbsd.results.mobility import Mobility
+from mbsd.results.views import Mobility
 
 MANY_COORDINATES = 600
 """From here on a mechanism counts as large."""
@@ -63,8 +63,8 @@ NEARBY = 0.02
 def blocks_of(packed: Packed, kept: set[int]) -> np.ndarray:
     """(B, 2) kept rows in pairs of one joint; -1 where there is no second."""
     blocks = []
-    for first, last in zip(packed.first_row[:-1], packed.first_row[1:], strict=True):
-        rows = [row for row in range(first, last) if row in kept]
+    for joint in range(len(packed.joints)):
+        rows = [row for row in packed.rows_of(joint) if row in kept]
         blocks += [(rows[k], rows[k + 1] if k + 1 < len(rows) else -1) for k in range(0, len(rows), 2)]
     return np.array(blocks, np.int64).reshape(-1, 2)
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from mbsd.arrays.chambers import check_pistons
 from mbsd.arrays.driver_laws import refuse_bad_laws
-from mbsd.arrays.inertias import inertia_of, usual_inertia
+from mbsd.arrays.inertias import inertia_of, usual_inertia, weight_of
 from mbsd.arrays.laws import compiled_laws, law_values
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
@@ -38,7 +38,7 @@ from mbsd.kinematics.pose.initial import Initial, consistent
 from mbsd.kinematics.pose.mobility import joint_mobility, rows_at
 from mbsd.model.mechanism import Model
 from mbsd.results.measured import measured, measured_rate
-from mbsd.results.mobility import Mobility
+from mbsd.results.views import Mobility
 
 if TYPE_CHECKING:
     from mbsd.dynamics.prepare.prepared import PreparedDynamics
@@ -149,7 +149,7 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     if switched:
         packed = with_contacts(m, packed, switched)
     apart = passes_for(packed, start, initial.q, weights, per_size, still)
-    weight = (inertia.reshape(-1, 3) * [*packed.system.gravity, 0.0]).ravel()
+    weight = weight_of(packed)
     packed = with_states(packed)
     if packed.states:
         initial = replace(initial, q=widened(packed, initial.q), v=widened(packed, initial.v))

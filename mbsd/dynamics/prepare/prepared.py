@@ -28,7 +28,7 @@ from mbsd.equations.interactions.switching import APPROACHED
 from mbsd.equations.loads import Loads
 from mbsd.kinematics.limits.free_wheels import FreeWheels
 from mbsd.kinematics.pose.initial import Initial
-from mbsd.results.mobility import Mobility
+from mbsd.results.views import Mobility
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed

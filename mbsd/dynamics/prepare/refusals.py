@@ -30,13 +30,12 @@ from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.prepare.large import MANY_COORDINATES
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.arrays import scratch_for
-from mbsd.dynamics.reference.projection import project
-from mbsd.dynamics.reference.rows import OPENED_BY
+from mbsd.dynamics.reference.projection import OPENED_BY, project
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.ideal_joints import with_ideal_joints
 from mbsd.model.force import Press
 from mbsd.model.mechanism import Model
-from mbsd.results.mobility import Mobility
+from mbsd.results.views import Mobility
 
 if TYPE_CHECKING:
     from mbsd.dynamics.prepare.large import MANY_COORDINATES
@@ -219,8 +218,7 @@ def _reaction(ready: PreparedDynamics, name: str) -> float:
     out, lam = np.zeros_like(state), np.zeros(len(packed.ws.phi))
     derivative(dynamics, scratch_for(dynamics, packed.ws, len(packed.motions), 1), ready.start, state, out, lam)
     packed.specials.check()
-    number = [joint.name for joint in packed.joints].index(name)
-    return math.hypot(*lam[packed.first_row[number] : packed.first_row[number + 1]].tolist())
+    return math.hypot(*lam[packed.rows_of(name)].tolist())
 
 
 BESIDE = (0.003, 0.001)

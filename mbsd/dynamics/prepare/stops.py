@@ -24,11 +24,10 @@ from mbsd.equations.laws import Laws, tabulate_law
 from mbsd.equations.loads import Loads, tabulate_loads
 from mbsd.model.laws import Motion
 from mbsd.model.laws.curve import Curve
-from mbsd.model.laws.fitting.cuts import BESIDE, ROOTS, Cut, finest, given_cuts
 from mbsd.model.laws.fitting.fit import Fit, fit
-from mbsd.model.laws.fitting.look import FORCE_LOOKS, look_times
-from mbsd.model.laws.fitting.sampled import Sampled
-from mbsd.results.jump_rows import Jumps
+from mbsd.model.laws.fitting.leaves import BESIDE, ROOTS, Cut, finest, given_cuts
+from mbsd.model.laws.fitting.sampling import FORCE_LOOKS, Sampled, look_times
+from mbsd.results.rows import Jumps
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed

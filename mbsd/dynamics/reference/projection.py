@@ -1,17 +1,60 @@
-"""Projection of a state onto its constraints, smallest change in the metric of the masses.
+"""Projection of a state onto its constraints, and rows of J one by one.
+
+It is the smallest change in the metric of the masses:
 
     q -= W^-1 J^T S^-1 Phi          v -= W^-1 J^T S^-1 (J v - nu),     S = J W^-1 J^T
+
+Velocities and forces along rows, and those that events switch measured alone:
+
+    along   J_r u              push   force += size J_r^T
+
+J is kept by rows: three entries for the body of each of a row's two sides.
 
 Source: Eich 1993, SIAM J. Numer. Anal. 30 (projection after each step); Hairer, Wanner, Solving ODEs II, VII.2.
 """
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import apart, kernel, shared
+from mbsd.compiling.jit import apart, internal, kernel, merged, shared
 from mbsd.dynamics.reference.pins import change_by_pins, factor_pins
 from mbsd.dynamics.reference.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
 from mbsd.equations.assembly import evaluate_nu, evaluate_position, position
+from mbsd.equations.constraints.relative import rows as relative_rows
 from mbsd.equations.laws import evaluate_laws
+from mbsd.equations.markers import place
+
+OPENED_BY = 1e-7
+"""Residuals (sizes, rad) above which a row that does not hold counts as open."""
+
+
+@internal
+def along(dyn, scratch, row, u):
+    """Return a row of J times u (3 nb,), where scratch.ws.jac is."""
+    out = 0.0
+    for side in range(2):
+        at = 3 * dyn.system.row_body[row, side]
+        for c in range(3):
+            out += scratch.ws.jac[row, 3 * side + c] * u[at + c]
+    return out
+
+
+@internal
+def push(dyn, scratch, row, size, force):
+    """Add a row of J^T, ``size`` times, to a force (3 nb,)."""
+    for side in range(2):
+        at = 3 * dyn.system.row_body[row, side]
+        for c in range(3):
+            force[at + c] += size * scratch.ws.jac[row, 3 * side + c]
+
+
+@merged
+def measure_gaps(dyn, scratch, t, q):
+    """Fill scratch.ws.phi and scratch.ws.jac of the constraints of relative pose, which are all that events switch."""
+    if scratch.drive.shape[0] > 1:
+        evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
+    place(dyn.system, q, scratch.ws)
+    relative_rows(dyn.system, q, scratch.drive, scratch.ws)
+
 
 LIFT = 1e-11
 """Lift of the diagonal of S, relative: where joints nearly depend (singular poses), rounding in Phi is not blown up."""

@@ -20,8 +20,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mbsd.compiling.jit import lazy
+from mbsd.dynamics.reference.projection import along, push
 from mbsd.dynamics.reference.refinement import respond
-from mbsd.dynamics.reference.rows import along, push
 from mbsd.equations.gauss import eliminate
 
 

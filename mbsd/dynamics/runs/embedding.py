@@ -1,14 +1,8 @@
-"""A mechanism ready for forward dynamics, put into independent coordinates where that can be done.
-
-Tables of blocks, whose bodies Newton-Raphson places (block.py), are those of mbsd/kinematics/groups/blocks.py one after
-the other, in one array of integers and one of numbers, and all their scratch is one array. ``block`` begins with where
-each begins.
-"""
+"""A mechanism ready for forward dynamics, put into independent coordinates where that can be done."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -16,100 +10,16 @@ import numpy as np
 
 from mbsd.base.codes import LAW_VALUE, LINEAR, POWER, TURN
 from mbsd.base.kept import Kept
-from mbsd.dynamics.independent.arrays import (
-    ARMS,
-    BODIES,
-    DETERMINANT_AT,
-    EQUATIONS,
-    FIRST,
-    FRAME,
-    HEAD,
-    HEADS,
-    KEPT_Q,
-    KEPT_SIZE,
-    LIMIT,
-    NEAR_AT,
-    NEAR_COUNT,
-    ROWS,
-    SEEN_AT,
-    SENSITIVITY,
-    TREE,
-    TURN_AT,
-    UNKNOWN_AT,
-    WORK,
-    Embedding,
-    EmbeddingScratch,
-)
+from mbsd.dynamics.independent.arrays import LIMIT, SENSITIVITY, Embedding, EmbeddingScratch
+from mbsd.dynamics.independent.block import KEPT_SIZE, block_arrays, block_work
 from mbsd.dynamics.independent.coordinates import MOST, Choice, Coordinate, choices, coordinates_along, coordinates_of
 from mbsd.dynamics.independent.equations import look
 from mbsd.dynamics.independent.groups import KEPT
 from mbsd.dynamics.prepare.prepared import UNKNOWN, PreparedDynamics
 from mbsd.dynamics.state import Settings
-from mbsd.kinematics.groups.block_tables import Tables
-from mbsd.kinematics.groups.blocks import ARM, LARGEST
 from mbsd.kinematics.groups.carrying.branch import FLOOR
 from mbsd.kinematics.groups.carrying.columns import AVOID, BASE, COS, INERTIA, MASS, NEAR, SPEED, THETA, TURNS
 from mbsd.kinematics.groups.plan import Plan
-
-
-def block_arrays(blocks: Sequence[Tables], bodies: int, columns: int) -> tuple[np.ndarray, np.ndarray]:
-    """``block`` and ``block_number`` of Embedding; ``columns``: of B."""
-    unknowns = sum(len(tables.equations) for tables in blocks)
-    most = max((len(tables.tree) for tables in blocks), default=0)
-    kept = 3 * bodies + (columns + 2) * unknowns + len(blocks) if blocks else 0
-    start = np.zeros(WORK + 1, np.int64)
-    start[HEADS], start[KEPT_SIZE] = WORK + 1, kept
-    start[KEPT_Q] = kept
-    start[UNKNOWN_AT], start[DETERMINANT_AT] = 3 * bodies, 3 * bodies + (columns + 2) * unknowns
-    sizes = [
-        (columns + 1) * len(blocks),
-        3 * bodies,
-        3 * bodies,
-        2 * bodies,
-        3 * LARGEST,
-        6 * LARGEST,
-        10 * LARGEST,
-        2 * LARGEST,
-        32,
-    ]
-    sizes.append(LARGEST * LARGEST + 3 * LARGEST * most + 16)
-    start[SEEN_AT : WORK + 1] = 2 * kept + np.cumsum([0, *sizes])
-    if not blocks:
-        start[WORK] = 0
-    integers, numbers = [*start], list[float]()
-    heads = np.zeros((len(blocks), HEAD), np.int64)
-    integers += [0] * heads.size
-    first = 0
-    for head, tables in zip(heads, blocks, strict=True):
-        near = sorted(set(tables.near) | _arms(tables))
-        head[[BODIES, EQUATIONS, NEAR_COUNT, FIRST]] = len(tables.tree), len(tables.equations), len(near), first
-        first += len(tables.equations)
-        for entry, lines in ((TREE, tables.tree), (ROWS, tables.equations)):
-            head[entry] = len(integers)
-            integers += [value for line in lines for value in line]
-        head[NEAR_AT] = len(integers)
-        integers += near
-        for entry, lines in ((FRAME, tables.frame), (ARMS, tables.arms)):
-            head[entry] = len(numbers)
-            numbers += [value for line in lines for value in line]
-    block = np.array(integers, np.int64)
-    block[WORK + 1 : WORK + 1 + heads.size] = heads.ravel()
-    return block, np.array(numbers, float)
-
-
-def block_work(block: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """The scratch of one run that begins at q (3 nb,)."""
-    work = np.zeros(int(block[WORK]))
-    if block[KEPT_SIZE]:
-        work[block[KEPT_Q] : block[KEPT_Q] + len(q)] = q
-        work[block[TURN_AT]] = 1.0
-    return work
-
-
-def _arms(tables: Tables) -> set[int]:
-    """Known bodies whose turns an equation counts."""
-    return {line[ARM] for line in tables.equations} - {line[0] for line in tables.tree} - {0}
-
 
 GOOD = 3.0
 """A choice under which no body moves faster than this for one unit of a coordinate is taken at once."""
@@ -257,8 +167,8 @@ def embedding_scratch(ready: PreparedDynamics, made: Embedded, stages: int, q: n
         force=np.zeros(3 * bodies),
         watch=np.full(2, np.inf),
         before=np.zeros((3, 3 * bodies)),
-        joined_body=np.zeros((2, bodies, KEPT)),
-        joined_rate=np.zeros((2, bodies, 3 * columns + 3)),
+        joined_body=np.zeros((3, bodies, KEPT)),
+        joined_rate=np.zeros((3, bodies, 3 * columns + 3)),
         multipliers=np.zeros(0),
         state=np.zeros((2, 3 + count)),
         stages=np.zeros((stages, 2, 3 + count)),

@@ -17,8 +17,7 @@ import numpy as np
 from mbsd.base.errors import ModelError, SimulationError
 from mbsd.dynamics import state as run_state
 from mbsd.dynamics.formulation import derivative
-from mbsd.dynamics.genevas.packing import genevas_of
-from mbsd.dynamics.genevas.steps import run_indexed
+from mbsd.dynamics.genevas import genevas_of, run_indexed
 from mbsd.dynamics.independent.arrays import LIMIT, SENSITIVITY
 from mbsd.dynamics.independent.equations import write_alone
 from mbsd.dynamics.integrators.kind import Integrator

@@ -66,11 +66,7 @@ def plan_parts(packed: Packed, q0: np.ndarray, pattern: np.ndarray, kept: np.nda
 class _Parts:
     def __init__(self, packed: Packed, q0: np.ndarray, pattern: np.ndarray, kept: np.ndarray) -> None:
         self.packed, self.pattern, self.rows = packed, pattern, {int(row) for row in kept}
-        whole = [
-            k
-            for k in range(len(packed.joints))
-            if self.rows.issuperset(range(packed.first_row[k], packed.first_row[k + 1]))
-        ]
+        whole = [k for k in range(len(packed.joints)) if self.rows.issuperset(packed.rows_of(k))]
         self.plan = Plan(packed, q0.reshape(-1, 3), links_of_joints(packed, whole))
         self.trains = Trains(packed, q0)
         self.train: list[list[int]] = []
@@ -124,8 +120,8 @@ class _Parts:
         return True
 
     def _used(self) -> set[int]:
-        first = self.packed.first_row
-        return {row for joint in self.plan.used for row in range(first[joint], first[joint + 1])} | self._taken_rows
+        rows_of = self.packed.rows_of
+        return {row for joint in self.plan.used for row in rows_of(joint)} | self._taken_rows
 
     def _take(self, block: Tables, rows: Sequence[int]) -> None:
         self.head.append(

@@ -105,7 +105,7 @@ def links_of_joints(packed: Packed, numbers: Iterable[int]) -> list[list[Link]]:
             continue
         i, j = (int(marker) for marker in packed.markers[number])
         offset, motion = 0.0, packed.motion_of(number)
-        for row in range(packed.first_row[number], packed.first_row[number + 1]):
+        for row in packed.rows_of(number):
             if row in angle_at:
                 offset = float(system.angle_offset[angle_at[row]])
             if row in rod_at:

@@ -7,7 +7,7 @@ import numpy as np
 from mbsd.arrays.packing import Packed, pack
 from mbsd.kinematics.limits.joints import coordinate, limits_of
 from mbsd.kinematics.pose.phases import take_decided
-from mbsd.model.contacts.stops import ANGLE_STOP, COORDINATE_STOP
+from mbsd.model.contacts import ANGLE_STOP, COORDINATE_STOP
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
 

@@ -23,7 +23,7 @@ from mbsd.kinematics.pose.close import CLOSED, close, rough_pose
 from mbsd.kinematics.pose.held_values import RANK_TOLERANCE, SMALL, independent_rows
 from mbsd.kinematics.pose.phases import let_phases_go, take_phases
 from mbsd.model.mechanism import Model
-from mbsd.results.mobility import Mobility
+from mbsd.results.views import Mobility
 
 BETTER = 4.0
 """Rows are exchanged for others whose least singular value is this many times larger."""

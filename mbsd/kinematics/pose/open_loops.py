@@ -22,7 +22,7 @@ def why_open(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray, time: f
     gaps = [float(np.abs(phi[a:b] * packed.row_scale()[a:b]).max()) for a, b in pairwise(packed.first_row)]
     worst = int(np.argmax(gaps))
     joint = packed.joints[worst]
-    rows = slice(packed.first_row[worst], packed.first_row[worst + 1])
+    rows = packed.rows_of(worst)
     what = "driver" if joint.kind.driven else "joint"
     gap = f"{1000 * float(np.linalg.norm(phi[rows])):.3g} mm"
     if packed.row_scale()[rows][0] == 1.0 and len(phi[rows]) == 1 and joint.kind.angular:

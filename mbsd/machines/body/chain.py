@@ -150,7 +150,7 @@ def repetition(bottom: float, top: float, tempo: Tempo) -> Motion:
     """Return the law (rad or m) of a repetition that begins at the bottom; constant if both ends are the same."""
     way = top - bottom
     if way == 0.0:
-        from mbsd.model.laws.polynomial import polynomial
+        from mbsd.model.laws.formulas import polynomial
 
         return polynomial(bottom)
     return function(

@@ -25,7 +25,7 @@ from mbsd.base.errors import ModelError
 from mbsd.machines.body.chain import Tempo, add_barbell, add_lifter, ends_given, not_below, repetition
 from mbsd.machines.body.figure import Figure
 from mbsd.mechanism import Mechanism
-from mbsd.model.laws.polynomial import polynomial
+from mbsd.model.laws.formulas import polynomial
 
 CONTACT = 0.74
 """Assumed: the lower tips of the shoulder blades from the hip, of the way from hip to shoulder."""

@@ -28,7 +28,7 @@ from mbsd.machines.body.chain import (
 from mbsd.machines.body.figure import Figure, combined
 from mbsd.mechanism import Mechanism
 from mbsd.model.body import Body
-from mbsd.model.laws.polynomial import polynomial
+from mbsd.model.laws.formulas import polynomial
 
 SLOWER = Tempo(up=1.5)
 """By default: the bar goes twice as far as in a hip thrust."""

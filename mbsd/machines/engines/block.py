@@ -28,7 +28,7 @@ from mbsd.base.arguments import not_negative_number, number_array, number_pair, 
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
 from mbsd.mechanism import Mechanism
-from mbsd.model.laws.constant_rate import constant_rate
+from mbsd.model.laws.formulas import constant_rate
 
 
 @dataclass(frozen=True)

@@ -41,9 +41,8 @@ from mbsd.mechanism import Mechanism
 from mbsd.model.body import Body
 from mbsd.model.cylinders.cycle import GasCycle
 from mbsd.model.forces.gas_cycle import gas_cycle
-from mbsd.model.laws.constant_rate import constant_rate
+from mbsd.model.laws.formulas import constant_rate, polynomial
 from mbsd.model.laws.law import Motion
-from mbsd.model.laws.polynomial import polynomial
 
 UPRIGHT = 0.5 * math.pi
 SPACE = 1.2

@@ -30,7 +30,7 @@ import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.machines.engines.layout import Layout
-from mbsd.results.vibration.crank import Turning
+from mbsd.results.orders import Turning
 
 ORDERS = (1, 2, 4, 6)
 

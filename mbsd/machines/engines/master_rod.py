@@ -26,7 +26,7 @@ from mbsd.base.arguments import finite_number, not_negative_number, positive_num
 from mbsd.base.errors import ModelError
 from mbsd.base.quantity import counted
 from mbsd.machines.engines.layout import SAME, Layout, cylinders_by_throw
-from mbsd.model.cylinders.articulated_motion import ArticulatedMotion
+from mbsd.model.cylinders.piston_motion import ArticulatedMotion
 
 UPRIGHT = 0.5 * math.pi
 AROUND = 0.56

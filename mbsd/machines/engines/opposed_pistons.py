@@ -31,7 +31,7 @@ from mbsd.mechanism import Mechanism
 from mbsd.model.body import Body
 from mbsd.model.cylinders.cycle import GasCycle
 from mbsd.model.forces.gas_cycle import gas_cycle
-from mbsd.model.laws.constant_rate import constant_rate
+from mbsd.model.laws.formulas import constant_rate
 
 SPACE = 1.2
 """Spacing of cylinders, in bores, where none is given."""

@@ -26,7 +26,7 @@ from mbsd.model.body import Body
 from mbsd.model.cams.followers import flat_cam
 from mbsd.model.cams.lift import Lift
 from mbsd.model.cylinders.cycle import GasCycle
-from mbsd.model.cylinders.four_stroke import FourStroke
+from mbsd.model.cylinders.engine_cycles import FourStroke
 
 UPRIGHT = 0.5 * math.pi
 LIFT, APART, ABOVE = 0.08, 0.47, 1.55

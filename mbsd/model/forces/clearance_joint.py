@@ -33,12 +33,11 @@ from typing import Any
 
 from mbsd.base.arguments import number_pair
 from mbsd.base.errors import ModelError
-from mbsd.model.adding.forces import above_zero, add_force, amounts_given
-from mbsd.model.adding.restitution import loss_of, restitution_given
 from mbsd.model.body import Marker
-from mbsd.model.force import Force, ForceKind, Interaction, Press, register
+from mbsd.model.entries import above_zero, add_force, amounts_given, loss_of, restitution_given
+from mbsd.model.force import Force, ForceKind, Interaction, Press, register_force
 from mbsd.model.joint import Joint
-from mbsd.model.joints.revolute import REVOLUTE
+from mbsd.model.joints.pairs import REVOLUTE
 from mbsd.model.mechanism import Model, number_given
 
 
@@ -77,7 +76,7 @@ def _moved(marker: Marker, x: float, y: float) -> Marker:
     return replace(marker, x=marker.x + c * x - s * y, y=marker.y + s * x + c * y)
 
 
-CLEARANCE_JOINT = register(
+CLEARANCE_JOINT = register_force(
     ForceKind(
         "clearance_joint",
         interactions=_interactions,

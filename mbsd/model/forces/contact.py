@@ -1,4 +1,6 @@
-"""Contact by penalty: a disc or a point of a body against a wall, a ground line or a terrain profile.
+"""Contact with a surface by penalty, and tyres on a road.
+
+Contact by penalty: a disc or a point of a body against a wall, a ground line or a terrain profile.
 
     depth  d = radius - distance of marker j from the surface;   d <= 0: no force
     normal N = k d^n (1 + c d'), never below 0                    k: N/m^n, n: 1.5 Hertz, c: s/m
@@ -23,24 +25,30 @@ T is smooth: within s_0 bodies creep instead of sticking.
 
 Sources: Hunt, Crossley 1975, J. Appl. Mech. 42, 440; Lankarani, Nikravesh 1990, J. Mech. Des. 112, 369; Flores,
 Machado, Silva, Martins 2011, Multibody Syst. Dyn. 25, 357.
+
+Tyre: a wheel that carries as a spring and damper and pulls by the magic formula of its slip.
+
+    depth    d = radius - height of the hub over the road;   N = k d + c d' where d > 0, never below 0
+    slip     kappa = -(v + omega h) / sqrt(v^2 + v_0^2)      v: speed of the hub along the road, h: its height
+    along    T = N D sin(C atan(B kappa - E (B kappa - atan(B kappa))))
+
+T acts on the wheel at the road, forward (along t, the way of x) where the wheel turns faster than it rolls; wheels
+that roll along x turn clockwise. v_0 keeps the slip finite at a standstill; there the tyre creeps and does not hold.
+The road is the x axis of marker i or a curve y(x) in its axes.
+
+Source: Pacejka, Bakker 1993, Vehicle System Dynamics 21, suppl. 1 (longitudinal slip only).
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from mbsd.base.errors import ModelError
-from mbsd.model.adding.forces import above_zero, add_force, amounts_given, curves_given
-from mbsd.model.adding.restitution import loss_of, restitution_given
 from mbsd.model.body import Marker
-from mbsd.model.force import Force, ForceKind, Interaction, register
+from mbsd.model.entries import above_zero, add_force, amounts_given, curves_given, loss_of, restitution_given
+from mbsd.model.force import Force, ForceKind, Interaction, register_force
 from mbsd.model.laws.curve import Curve, curve
-from mbsd.model.mechanism import Model
+from mbsd.model.mechanism import Model, number_given
 
-if TYPE_CHECKING:
-    from mbsd.model.force import Force
-
-OWN = ("radius", "stiffness", "exponent", "damping", "friction", "slip_speed")
+CONTACT_OWN = ("radius", "stiffness", "exponent", "damping", "friction", "slip_speed")
 
 
 def surface(force: Force) -> list[float]:
@@ -53,24 +61,24 @@ def surface(force: Force) -> list[float]:
     return graph_numbers(profile).tolist()
 
 
-def _interactions(force, masses):
+def _contact_interactions(force, masses):
     p = force.params
     loss = loss_of(p)
-    numbers = surface(force) + [p[name] for name in OWN] + [loss, p["least_approach"]]
+    numbers = surface(force) + [p[name] for name in CONTACT_OWN] + [loss, p["least_approach"]]
     return (Interaction("contact", force.i, force.j, numbers, remembers=loss > 0.0),)
 
 
-def _depth_potential(force, depth):
+def _contact_depth_potential(force, depth):
     power = force.params["exponent"] + 1.0
     return force.params["stiffness"] * depth**power / power
 
 
-CONTACT = register(
+CONTACT = register_force(
     ForceKind(
         "contact",
-        interactions=_interactions,
+        interactions=_contact_interactions,
         surface=surface,
-        depth_potential=_depth_potential,
+        depth_potential=_contact_depth_potential,
         example=lambda m, i, j: m.contact(
             "example",
             i,
@@ -124,3 +132,55 @@ def contact(
     params["slip_speed"] = above_zero(m, name, "slip_speed", slip_speed)
     laws = {} if profile is None else curves_given(m, name, profile=profile)
     return add_force(m, CONTACT, name, surface, body, params, laws)
+
+
+TYRE_OWN = ("radius", "stiffness", "damping", "grip", "slope", "shape", "curvature", "standstill")
+
+
+def _tyre_interactions(force, masses):
+    numbers = surface(force) + [force.params[name] for name in TYRE_OWN]
+    return (Interaction("tyre", force.i, force.j, numbers),)
+
+
+def _tyre_depth_potential(force, depth):
+    return 0.5 * force.params["stiffness"] * depth**2
+
+
+TYRE = register_force(
+    ForceKind(
+        "tyre",
+        interactions=_tyre_interactions,
+        surface=surface,
+        depth_potential=_tyre_depth_potential,
+        example=lambda m, i, j: m.tyre("example", i, j, 4.0, 300.0, damping=3.0, grip=0.9, standstill=0.3),
+    )
+)
+
+
+@TYRE.adds
+def tyre(
+    m: Model,
+    name: str,
+    road: Marker,
+    hub: Marker,
+    radius: float,
+    stiffness: float,
+    damping: float = 0.0,
+    grip: float = 1.0,
+    slope: float = 10.0,
+    shape: float = 1.65,
+    curvature: float = 0.97,
+    standstill: float = 0.1,
+    profile: Curve | None = None,
+) -> Force:
+    """Add a wheel of ``radius`` (m) about ``hub`` on a road: a marker's x axis, or a profile y(x) there.
+
+    ``stiffness`` (N/m) and ``damping`` (N s/m) carry; ``grip`` D, ``slope`` B, ``shape`` C and ``curvature`` E of
+    the magic formula pull by longitudinal slip, which is kept finite below ``standstill`` (m/s).
+    """
+    params = amounts_given(m, name, stiffness=stiffness, damping=damping, grip=grip, slope=slope, shape=shape)
+    params["radius"] = above_zero(m, name, "radius", radius)
+    params["standstill"] = above_zero(m, name, "standstill", standstill)
+    params["curvature"] = number_given(m, f"force '{name}': curvature", curvature)
+    laws = {} if profile is None else curves_given(m, name, profile=profile)
+    return add_force(m, TYRE, name, road, hub, params, laws)

@@ -22,8 +22,8 @@ from __future__ import annotations
 from typing import Any
 
 from mbsd.base.errors import ModelError
-from mbsd.model.adding.forces import above_zero, add_force, amounts_given
-from mbsd.model.force import Force, ForceKind, register
+from mbsd.model.entries import above_zero, add_force, amounts_given
+from mbsd.model.force import Force, ForceKind, register_force
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model, own_joint
 
@@ -33,7 +33,7 @@ def _example(m: Any, i: Any, j: Any) -> None:
     m.friction("example", "pin", 0.3, static=0.4, viscous=0.05, radius=0.2, slip_speed=0.1, stribeck=0.3)
 
 
-FRICTION = register(ForceKind("friction", example=_example, of_reactions=True))
+FRICTION = register_force(ForceKind("friction", example=_example, of_reactions=True))
 
 
 @FRICTION.adds

@@ -19,14 +19,12 @@ from functools import lru_cache
 from mbsd.base.codes import AXIS
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
-from mbsd.model.adding.forces import above_zero, add_force, amounts_given
 from mbsd.model.body import Body, Marker
-from mbsd.model.chamber import Chamber, CrankCycle
 from mbsd.model.cylinders.cycle import Bore, GasCycle
+from mbsd.model.cylinders.engine_cycles import PressureTable, four_stroke
 from mbsd.model.cylinders.engine_cylinder import EngineCylinder, cylinder_of, given_motion
-from mbsd.model.cylinders.four_stroke import four_stroke
-from mbsd.model.cylinders.pressure_table import PressureTable
-from mbsd.model.force import Element, Force, ForceKind, Interaction, Masses, register
+from mbsd.model.entries import above_zero, add_force, amounts_given
+from mbsd.model.force import Chamber, CrankCycle, Element, Force, ForceKind, Interaction, Masses, register_force
 from mbsd.model.mechanism import Model, number_given, own_body
 
 PHASE = 6
@@ -85,7 +83,7 @@ def _chamber(force: Force, masses: Masses) -> Chamber:
     return Chamber(bore.area, cylinder.shift, force.params["outside"], of_crank)
 
 
-GAS_CYCLE = register(
+GAS_CYCLE = register_force(
     ForceKind(
         "gas_cycle",
         interactions=_interactions,

@@ -29,11 +29,9 @@ import numpy as np
 
 from mbsd.base.arguments import number_pair
 from mbsd.base.errors import ModelError
-from mbsd.model.adding.forces import above_zero, add_force, amounts_given
-from mbsd.model.adding.joints import wheels_given
-from mbsd.model.adding.restitution import loss_of, restitution_given
 from mbsd.model.body import Marker
-from mbsd.model.force import Force, ForceKind, Interaction, Mesh, register
+from mbsd.model.entries import above_zero, add_force, amounts_given, loss_of, restitution_given, wheels_given
+from mbsd.model.force import Force, ForceKind, Interaction, Mesh, register_force
 from mbsd.model.joint import Joint, JointKind
 from mbsd.model.mechanism import Model, number_given
 from mbsd.model.teeth import with_radii
@@ -114,7 +112,7 @@ def _depth_potential(force, depth):
     return force.params["stiffness"] * depth**power / power
 
 
-GEAR_MESH = register(
+GEAR_MESH = register_force(
     ForceKind(
         "gear_mesh",
         interactions=_interactions,

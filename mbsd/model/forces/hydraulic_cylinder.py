@@ -22,12 +22,11 @@ from mbsd.base.codes import LINE
 from mbsd.base.errors import ModelError, ModelWarning, SimulationError
 from mbsd.base.quantity import written
 from mbsd.base.warning import warn
-from mbsd.model.adding.forces import Amount, above_zero, add_force, amount_given, amounts_given
 from mbsd.model.body import Marker
-from mbsd.model.force import Element, Force, ForceKind, Interaction, Masses, States, register
+from mbsd.model.entries import Amount, above_zero, add_force, amount_given, amounts_given
+from mbsd.model.force import Element, Force, ForceKind, Interaction, Masses, States, marker_place, register_force
 from mbsd.model.mechanism import Model
 from mbsd.model.oil_cylinder import ATMOSPHERE, LEAST, OilCylinder
-from mbsd.model.places import marker_place
 
 DEAD = 0.05
 """Part of a swept volume that is dead where nobody says how much is."""
@@ -146,7 +145,7 @@ def _check(model: str, force: Force, times: np.ndarray, length: np.ndarray, stat
             )
 
 
-HYDRAULIC_CYLINDER = register(
+HYDRAULIC_CYLINDER = register_force(
     ForceKind(
         "hydraulic_cylinder",
         interactions=_interactions,

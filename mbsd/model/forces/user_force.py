@@ -14,9 +14,9 @@ from typing import Any
 
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
-from mbsd.model.adding.forces import add_force
 from mbsd.model.body import Body
-from mbsd.model.force import Force, ForceKind, register
+from mbsd.model.entries import add_force
+from mbsd.model.force import Force, ForceKind, register_force
 from mbsd.model.laws.function import checked_pulses
 from mbsd.model.mechanism import Model, own_body
 
@@ -25,7 +25,7 @@ def _wind_and_spring(t: Any, q: Any, v: Any) -> Any:
     return 2.0 * t - 3.0 * q[0] - 0.4 * v[0], 1.0 + q[1] * q[2], -0.7 * v[2] + q[0]
 
 
-USER_FORCE = register(
+USER_FORCE = register_force(
     ForceKind(
         "user_force",
         example=lambda m, i, j: m.user_force("example", _wind_and_spring, j.body),

@@ -1,1 +1,1 @@
-"""Joints: what users connect bodies with, one file a kind, each made of constraints."""
+"""Joints: what users connect bodies with, each made of constraints."""

@@ -14,9 +14,9 @@ from typing import Any
 
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
-from mbsd.model.adding.joints import join
 from mbsd.model.body import Marker
-from mbsd.model.joint import Joint, JointKind, register
+from mbsd.model.entries import join
+from mbsd.model.joint import Joint, JointKind, register_joint
 from mbsd.model.mechanism import Model
 
 
@@ -25,7 +25,7 @@ def _ellipse(x: Any, y: Any, a: Any) -> Any:
     return x * x / (1.0 + 0.1 * a * a) + y * y / 4.0 - 1.0 + 0.3 * x * a
 
 
-CONSTRAINT = register(
+CONSTRAINT = register_joint(
     JointKind(
         "constraint",
         ("user",),

@@ -18,9 +18,9 @@ import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
-from mbsd.model.adding.joints import join, radii_given
 from mbsd.model.body import Marker
-from mbsd.model.joint import Joint, JointKind, register
+from mbsd.model.entries import join, radii_given
+from mbsd.model.joint import Joint, JointKind, register_joint
 from mbsd.model.mechanism import Model
 
 ENTRY = 1e-6
@@ -38,7 +38,7 @@ def _problem(params: Mapping[str, Any], x: float, y: float) -> str | None:
     )
 
 
-GENEVA = register(
+GENEVA = register_joint(
     JointKind(
         "geneva",
         ("geneva",),

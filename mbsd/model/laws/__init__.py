@@ -5,13 +5,9 @@ A law takes times (T,) and returns (T, 3): value, rate, acceleration, in rad or 
 
 from __future__ import annotations
 
-from mbsd.model.laws.constant_rate import constant_rate
-from mbsd.model.laws.cycloidal import cycloidal
+from mbsd.model.laws.formulas import constant_rate, cycloidal, harmonic, polynomial
 from mbsd.model.laws.function import function
-from mbsd.model.laws.harmonic import harmonic
 from mbsd.model.laws.law import Motion
-from mbsd.model.laws.polynomial import polynomial
-from mbsd.model.laws.recorded import recorded
-from mbsd.model.laws.table import table
+from mbsd.model.laws.splines import recorded, table
 
 __all__ = ["Motion", "constant_rate", "cycloidal", "function", "harmonic", "polynomial", "recorded", "table"]

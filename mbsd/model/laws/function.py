@@ -51,7 +51,7 @@ class Function(WithFunctions, Motion):
 
     def as_load(self, first: float, last: float) -> Motion:
         """The fit of f alone over the span; f may jump."""
-        from mbsd.model.laws.polynomial import polynomial
+        from mbsd.model.laws.formulas import polynomial
 
         return self._fit(first, last, load=True) if last > first else polynomial(self._values(np.array([first]))[0])
 
@@ -60,7 +60,7 @@ class Function(WithFunctions, Motion):
         if self.df is None or self.ddf is None:
             return self.over(first, last).compiled(first, last)
         from mbsd.model.laws.fitting.exact import exact_pieces
-        from mbsd.model.laws.fitting.look import look_times
+        from mbsd.model.laws.fitting.sampling import look_times
 
         last = last if last > first else first + 1.0
         looks = look_times(first, last, self.shortest)
@@ -68,7 +68,7 @@ class Function(WithFunctions, Motion):
 
     def knots(self, first: float, last: float) -> np.ndarray:
         """Where a pulse cannot hide, and its breaks."""
-        from mbsd.model.laws.fitting.look import look_times
+        from mbsd.model.laws.fitting.sampling import look_times
 
         times = np.unique(np.concatenate([look_times(first, last, self.shortest), self.breaks]))
         return times[(times >= first) & (times <= last)]
@@ -83,11 +83,9 @@ class Function(WithFunctions, Motion):
         return _samples(self.f, times)
 
     def _fit(self, first: float, last: float, load: bool) -> Fitted:
-        from mbsd.model.laws.fitting.cuts import given_cuts
-        from mbsd.model.laws.fitting.fit import fit
-        from mbsd.model.laws.fitting.look import look_times
-        from mbsd.model.laws.fitting.pieces import fit_pieces
-        from mbsd.model.laws.fitting.sampled import Sampled
+        from mbsd.model.laws.fitting.fit import fit, fit_pieces
+        from mbsd.model.laws.fitting.leaves import given_cuts
+        from mbsd.model.laws.fitting.sampling import Sampled, look_times
 
         looks, sampled = look_times(first, last, self.shortest), Sampled(self._values)
         fitted = fit(sampled, first, last, given_cuts(self.breaks, first, last), looks, load)

@@ -58,7 +58,7 @@ class Motion:
         Raises ModelError where f or f' jumps, and where f' and f'' are not the derivatives of f.
         """
         from mbsd.model.laws.fitting.exact import exact_pieces
-        from mbsd.model.laws.fitting.look import look_times
+        from mbsd.model.laws.fitting.sampling import look_times
 
         last = last if last > first else first + 1.0
         looks = look_times(first, last)
@@ -69,7 +69,7 @@ class Motion:
 
         Whatever else keeps the law from being made ready there is no matter of its value at ``time``.
         """
-        from mbsd.model.laws.fitting.derivatives import DerivativeError
+        from mbsd.model.laws.fitting.exact import DerivativeError
 
         try:
             self.compiled(time, time)

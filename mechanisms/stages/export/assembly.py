@@ -51,7 +51,7 @@ _STYLED = b"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION("
 _ENTITY = re.compile(rb"#(\d+) = (.*?);\n", re.DOTALL)
 _REFERENCE = re.compile(rb"#(\d+)")
 _DRAWN = ("band", "coil", "cylinder", "spiral", "cord")
-"""Looks of what films draw between parts; see mbsd/model/looks.py."""
+"""Looks of what films draw between parts; see mbsd/model/joint.py."""
 
 
 def step(wanted: Wanted) -> tuple[bytes, list[str]]:

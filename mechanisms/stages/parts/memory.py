@@ -19,7 +19,7 @@ from typing import Any
 import msgspec
 
 from mbsd.dependencies.imported import absolute_name
-from mbsd.dependencies.meaning import DYNAMIC
+from mbsd.dependencies.inputs import DYNAMIC
 from mechanisms.stages.loading.inputs import Inputs, observed
 from shared.contract import Piece
 from shared.stage.errors import BUSY, UserError

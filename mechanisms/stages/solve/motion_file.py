@@ -209,7 +209,7 @@ def to_motion(
     ``sources`` says where the mass of each body is from; if it is not given, from the parts.
     """
     import mbsd
-    from mbsd.results.releases import release_times
+    from mbsd.results.rows import release_times
 
     notes = list(solution.notes)
     solution = solution.only(solution.is_defined) if notes else solution
@@ -372,7 +372,7 @@ def _look(look: str, holds_energy: bool) -> Look:
 
 def _gas(force: Force, view: ForceView) -> contract.GasMotion | None:
     """Return the gas motion of a force that comes from gas behind a piston, else None."""
-    from mbsd.results.gas import GasView
+    from mbsd.results.fluids import GasView
 
     if not isinstance(view, GasView):
         return None
@@ -389,7 +389,7 @@ def _gas(force: Force, view: ForceView) -> contract.GasMotion | None:
 
 
 def _hydraulics(view: ForceView) -> contract.HydraulicMotion | None:
-    from mbsd.results.hydraulics import HydraulicView
+    from mbsd.results.fluids import HydraulicView
 
     if not isinstance(view, HydraulicView):
         return None
@@ -402,7 +402,7 @@ def _hydraulics(view: ForceView) -> contract.HydraulicMotion | None:
 
 def _contact(solution: Solution, name: str, row: int) -> contract.ContactMotion:
     """Return the motion of the contact whose gap is ``row`` of J; the way on which it slides is the next one."""
-    from mbsd.model.contact import ContactKind
+    from mbsd.model.joint import ContactKind
     from mbsd.results.acting import acting
 
     packed, view = solution.packed, solution.contact(name)

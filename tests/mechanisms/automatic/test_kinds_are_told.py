@@ -5,9 +5,8 @@ from __future__ import annotations
 import re
 
 import mechanisms.stages.automatic.kinds  # noqa: F401  (enters them)
-from mbsd.model.contact import CONTACT_KINDS
 from mbsd.model.force import FORCE_KINDS
-from mbsd.model.joint import KINDS
+from mbsd.model.joint import CONTACT_KINDS, KINDS
 from mechanisms.stages.automatic.layout import plan
 from shared.stage.paths import ROOT
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from mbsd import ModelError
-from mbsd.model.cylinders.heat_release import HeatRelease, closed_pressure
+from mbsd.model.cylinders.cycle import HeatRelease, closed_pressure
 
 CASE = json.loads((Path(__file__).parents[2] / "published/reference/engine_wiebe.json").read_text())
 GIVEN = CASE["given"]

@@ -7,9 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from mbsd.model.cylinders.articulated_motion import ArticulatedMotion
 from mbsd.model.cylinders.engine_cylinder import given_motion
-from mbsd.model.cylinders.piston_motion import PistonMotion
+from mbsd.model.cylinders.piston_motion import ArticulatedMotion, PistonMotion
 
 PHI = np.linspace(-math.pi, math.pi, 73)
 MOTIONS = {

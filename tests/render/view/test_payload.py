@@ -15,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from mbsd.results.vibration.orders import Orders
+from mbsd.results.orders import Orders
 from render.film.solids import read_triangles
 from render.view.bundle import PAGE, bundle, node, node_modules
 from render.view.document import document, encode

@@ -20,13 +20,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.model.laws import Motion
-from mbsd.model.laws.fitting.cuts import given_cuts
 from mbsd.model.laws.fitting.fit import fit
-from mbsd.model.laws.fitting.leaves import BEND_OF_LAST, ROUNDING
-from mbsd.model.laws.fitting.look import look_times
-from mbsd.model.laws.fitting.sampled import Sampled
+from mbsd.model.laws.fitting.leaves import BEND_OF_LAST, ROUNDING, given_cuts
+from mbsd.model.laws.fitting.sampling import Sampled, look_times
 from mbsd.model.laws.function import Function
-from mbsd.model.laws.table import Table
+from mbsd.model.laws.splines import Table
 from mbsd.results.solution import Solution
 from tools.hunt.words.raised import Raised
 

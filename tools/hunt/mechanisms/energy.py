@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from mbsd import Mechanism, curve
-from mbsd.model.adding.restitution import MODELS
+from mbsd.model.entries import MODELS
 from mbsd.results.solution import Solution
 from tools.hunt.mechanisms.machines import solid
 from tools.hunt.solving.free_case import TOLERANCE

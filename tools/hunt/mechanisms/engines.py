@@ -8,7 +8,7 @@ import numpy as np
 
 from mbsd import GasCycle, Mechanism, constant_rate, pressure_table, two_stroke
 from mbsd.arrays.chambers import chambers
-from mbsd.results.gas import GasView
+from mbsd.results.fluids import GasView
 from mbsd.results.solution import Solution
 from tools.hunt.subject import Subject, family
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from mbsd import constant_rate, cycloidal, function, harmonic, polynomial, table
 from mbsd.model.laws import Motion
-from mbsd.model.laws.recorded import recorded
+from mbsd.model.laws.splines import recorded
 
 TURN = 2 * math.pi
 

@@ -2,29 +2,17 @@
 
 from __future__ import annotations
 
-import importlib
 import math
-import pkgutil
 import warnings
 
 import numpy as np
 
-import mbsd.model.contacts
-import mbsd.model.drivers
-import mbsd.model.forces
-import mbsd.model.joints
 from mbsd import Mechanism
-from mbsd.model.contact import CONTACT_KINDS
 from mbsd.model.force import FORCE_KINDS
-from mbsd.model.joint import KINDS
+from mbsd.model.joint import CONTACT_KINDS, KINDS
 from mbsd.model.laws.examples import EXAMPLES
 from tools.hunt.outcome import attempt
 from tools.hunt.subject import Subject, family
-
-for _package in (mbsd.model.joints, mbsd.model.drivers, mbsd.model.forces, mbsd.model.contacts):
-    for _module in pkgutil.iter_modules(_package.__path__):
-        importlib.import_module(f"{_package.__name__}.{_module.name}")
-
 
 CENTRES = {"gear_pair": 0.3, "belt": 0.7}
 """Distances (m) at which the examples meet."""

@@ -7,13 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbsd.model.laws import Motion
-from mbsd.model.laws.constant_rate import ConstantRate
 from mbsd.model.laws.curve import Curve
-from mbsd.model.laws.cycloidal import Cycloidal
-from mbsd.model.laws.harmonic import Harmonic
-from mbsd.model.laws.polynomial import Polynomial
-from mbsd.model.laws.recorded import Recorded
-from mbsd.model.laws.table import Table
+from mbsd.model.laws.formulas import ConstantRate, Cycloidal, Harmonic, Polynomial
+from mbsd.model.laws.splines import Recorded, Table
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,8 +12,7 @@ from mbsd import Mechanism
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import pack
 from mbsd.base.errors import ModelError
-from mbsd.model.change import given, given_body
-from mbsd.model.roles import arguments
+from mbsd.model.change import arguments, given, given_body
 from mbsd.results.solution import Solution
 from mbsd.saving.document import build, document
 from tools.hunt.outcome import AGREED, UNCLEAR, WRONG, Outcome

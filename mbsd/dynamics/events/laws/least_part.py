@@ -15,8 +15,17 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mbsd.compiling.jit import internal, kernel
-from mbsd.dynamics.events.bounds import AGREED_TOGETHER, MOST_PUSH, PASSES_BETWEEN, PASSES_TOGETHER, WEAKEST
 from mbsd.dynamics.events.laws.holding import hold, holding_of
+
+PASSES_TOGETHER, AGREED_TOGETHER = 30, 1e-11
+"""Passes in which contacts and joints that hold together agree on their limits, at most; what may still change."""
+PASSES_BETWEEN = 100
+"""The same where they are looked for between bounds."""
+MOST_PUSH = 10.0
+"""Times all normal forces before, and what loads ask for, that they may be after they are divided: where bodies wedge
+the least part of their limits belongs to infinite ones."""
+WEAKEST = 1e-9
+"""Part of the largest limit that each has at least, where limits are weights."""
 
 PULLED = 1e300
 """Part where contacts would have to pull."""

@@ -26,7 +26,7 @@ from mbsd.dynamics.events.arrays import (
     TOUCHING,
     WAY,
 )
-from mbsd.dynamics.events.friction.decisions import note_met, one_by_one, slide_or_stick
+from mbsd.dynamics.events.friction import note_met, one_by_one, slide_or_stick
 from mbsd.dynamics.events.jumps import find_staying, find_touching, impacts, moving
 from mbsd.dynamics.events.rows import (
     find_rates,
@@ -37,8 +37,8 @@ from mbsd.dynamics.events.rows import (
     release_rows,
     stop,
 )
-from mbsd.dynamics.events.sticking.answers import find_answers, stand
 from mbsd.dynamics.events.sticking.deciding import decide
+from mbsd.dynamics.events.sticking.sharing import find_answers, stand
 from mbsd.dynamics.state import TIME
 from mbsd.equations.joint_friction import SENSE
 

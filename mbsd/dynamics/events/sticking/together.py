@@ -26,16 +26,17 @@ from mbsd.dynamics.events.arrays import (
     UNSHARED,
     WAY,
 )
-from mbsd.dynamics.events.bounds import AGREED_TOGETHER, PASSES
 from mbsd.dynamics.events.laws import least_part as least
-from mbsd.dynamics.events.laws.least_part import PULLED, least_part
+from mbsd.dynamics.events.laws.least_part import AGREED_TOGETHER, PULLED, least_part
 from mbsd.dynamics.events.rows import gaps_of, hold_rows, release_rows
-from mbsd.dynamics.events.sticking.answers import factor, find_answers
-from mbsd.dynamics.events.sticking.sharing import limit_of
-from mbsd.dynamics.events.sticking.sliding import (
+from mbsd.dynamics.events.sticking.sharing import (
+    PASSES,
     add_beside,
     add_beside_lam,
+    factor,
+    find_answers,
     find_changes,
+    limit_of,
     note_beside,
     press_beside,
 )

@@ -22,7 +22,7 @@ from mbsd.dynamics.events.arrays import (
     VALUE,
     WAY,
 )
-from mbsd.dynamics.events.friction.resting import holds
+from mbsd.dynamics.events.friction import holds
 from mbsd.dynamics.events.laws.least_part import PULLED
 from mbsd.dynamics.events.rows import gaps_of
 from mbsd.dynamics.events.sticking.sharing import carry, limit_of

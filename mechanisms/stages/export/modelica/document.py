@@ -6,9 +6,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from mbsd.model.laws.constant_rate import ConstantRate
-from mbsd.model.laws.harmonic import Harmonic
-from mbsd.model.laws.polynomial import Polynomial
+from mbsd.model.laws.formulas import ConstantRate, Harmonic, Polynomial
 from mechanisms.stages.export.tree import ROUNDING
 
 # Classes inside the model that PlanarMechanics lacks: each acts between two of its frames.

@@ -1,1 +1,0 @@
-"""Contacts with friction: forces, and what slides or sticks."""

@@ -1,1 +1,0 @@
-"""Events of the user in the compiled loop."""

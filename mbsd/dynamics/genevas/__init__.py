@@ -1,1 +1,0 @@
-"""Genevas in independent coordinates: steps that end where their pins enter or leave."""

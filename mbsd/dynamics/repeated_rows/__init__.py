@@ -1,1 +1,0 @@
-"""Rows of joints that repeat others: which of them hold."""

@@ -70,6 +70,12 @@ def finish(silent: Path, sound: Callable[[], bytes] | None, count: int, preset: 
     mux(silent, waves, count, preset, fps, film)
 
 
+def write_sound(out: Out, preset: Preset, show: str, target: Path) -> Path:
+    """Write the sound of a film whole as the WAV file ``target``, and return it."""
+    write_bytes(target, _sound(out, preset, show))
+    return target
+
+
 def _sound(out: Out, preset: Preset, show: str) -> bytes:
     """Return the sound of a film as the bytes of a WAV file."""
     from render.sound.sound import sound_of, wav

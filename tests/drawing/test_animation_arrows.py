@@ -77,7 +77,7 @@ def test_teeth_turn_with_their_wheels_and_stay_in_mesh() -> None:
     m.drive_angle("motor", pinion, constant_rate(3.0))
     drawn = scene(m.sweep(2 * math.pi))
     for k in (0, 7, 23):
-        brush = Brush(None, drawn.unit)
+        brush = Brush(None, drawn.steady.unit)
         drawn.draw(brush, k, {"one": "#112233", "two": "#445566"})
         (z_i, phase_i), (z_j, phase_j) = brush.wheels["one", 0.02], brush.wheels["two", 0.03]
         # a tooth of one meets a gap of two at angle 0 of one, which is pi of two

@@ -238,7 +238,7 @@ def render(pictures: Pictures, store: FrameStore, frames: Sequence[int], what: s
     if not missing:
         return
     _refuse_full_disk(name, preset, store, len(missing))
-    known = _forecast(preset, store)
+    known = forecast(preset, store)
     if known is not None:
         each, source = known
         say("frames", f"{name}: forecast {duration(each * len(missing))} at {duration(each)} a frame, {source}")
@@ -266,7 +266,7 @@ def _makers(job: Job, store: FrameStore, longest: float) -> AbstractContextManag
     return cluster.workers(job, store)
 
 
-def _forecast(preset: Preset, store: FrameStore) -> tuple[float, str] | None:
+def forecast(preset: Preset, store: FrameStore) -> tuple[float, str] | None:
     """Return seconds a picture, and where the number is from; None if nothing comparable was rendered here yet.
 
     The last run of this preset counts, else the run nearest in size, scaled by samples. Below a certain size it is

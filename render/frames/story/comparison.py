@@ -67,7 +67,7 @@ def pair_of(outs: Sequence[Out], preset: Preset, half: Preset) -> Pair:
     sceneries = [
         replace(scenery_of(film, None, why, half), curves=curves[0]) for film, why in zip(films, whys, strict=True)
     ]
-    _on_one_scale(sceneries)
+    put_on_one_scale(sceneries)
     tellings = []
     for film, scenery in zip(films, sceneries, strict=True):
         shot = comparison_shot(scenery, ramp, most[0] if most else None, names)
@@ -88,7 +88,7 @@ def _first(curves: Sequence[Curve], name: str) -> list[Curve]:
     return sorted(curves, key=lambda curve: curve.name != name)
 
 
-def _on_one_scale(sceneries: Sequence[Scenery]) -> None:
+def put_on_one_scale(sceneries: Sequence[Scenery]) -> None:
     """Let both cameras stand as far away as the farther one: the larger machine is larger in the picture, too."""
     stands = [scenery.stand() for scenery in sceneries]
     far = max(stand.distance for stand in stands)
@@ -186,7 +186,7 @@ def _silent_film(outs: list[Out], preset: Preset, pair: Pair, film: Path) -> Pat
     stage = Stage(outs[1], film.stem.replace(outs[1].name, "pictures", 1), _key(outs, preset), [target])
     if not stage.is_fresh():
         made = [rendered(out, part, telling) for out, telling in zip(outs, pair.tellings, strict=True)]
-        encoded(_side_by_side(preset, made), pair.tellings[0].story, pair.drawing, preset, target)
+        encoded(side_by_side(preset, made), pair.tellings[0].story, pair.drawing, preset, target)
         stage.record()
     return target
 
@@ -226,7 +226,8 @@ def half(preset: Preset) -> Preset:
     return replace(preset, name=f"{preset.name}-half", width=wide, height=high)
 
 
-def _side_by_side(preset: Preset, made: Sequence[Rendered]) -> Iterator[tuple[str, Any]]:
+def side_by_side(preset: Preset, made: Sequence[Rendered]) -> Iterator[tuple[str, Any]]:
+    """Yield the pictures of both variants in one, with the names of both; one that stands is pasted once."""
     from PIL import Image
 
     kept: tuple[str, Any] | None = None

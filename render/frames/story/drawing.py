@@ -188,7 +188,7 @@ class Drawing:
             y = note.y * self.high + note.dy * (high / 2 + 1.2 * size)
             x = min(max(x, edge + wide / 2), self.wide - self.right - edge - wide / 2)
             y = min(max(y, edge + 2.2 * size + high / 2), low - high / 2)
-            if _on_arrow((x - wide / 2, y - high / 2, x + wide / 2, y + high / 2), note, self.wide, self.high):
+            if is_on_arrow((x - wide / 2, y - high / 2, x + wide / 2, y + high / 2), note, self.wide, self.high):
                 away = note.dx if abs(note.dx) > LEANS else 1.0 if x < self.wide / 2 else -1.0
                 x += math.copysign(wide / 2 + 1.1 * size, away)
                 x = min(max(x, edge + wide / 2), self.wide - self.right - edge - wide / 2)
@@ -223,7 +223,7 @@ def _overlap(a: tuple[float, float, float, float], b: tuple[float, float, float,
     return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
 
 
-def _on_arrow(box: tuple[float, float, float, float], note: Note, wide: int, high: int) -> bool:
+def is_on_arrow(box: tuple[float, float, float, float], note: Note, wide: int, high: int) -> bool:
     """Return True if a box (pixels) that could not go farther lies on the arrow whose tip it names."""
     tip, back = np.array([note.x * wide, note.y * high]), np.linspace(0.0, 0.25 * min(wide, high), 40)
     x, y = (tip[:, None] - np.array([[note.dx], [note.dy]]) * back).tolist()

@@ -13,7 +13,7 @@ from PIL import Image
 from render.film.story.scenery import Stand
 from render.frames.encode import ffmpeg, refuse_other_than
 from render.frames.story import comparison
-from render.frames.story.comparison import FIRST, SECOND, Pair, _on_one_scale, pair_of
+from render.frames.story.comparison import FIRST, SECOND, Pair, pair_of, put_on_one_scale
 from render.presets import PRESETS, Preset, preset_named
 from shared.contract import read_motion, write_motion
 from shared.contract.shot import Shot, Story
@@ -78,7 +78,7 @@ def test_both_are_on_one_scale_unless_one_would_be_lost(far: float, held: list[f
             self.held = stand
 
     both = [Asked(0.4), Asked(far)]
-    _on_one_scale(both)  # pyright: ignore[reportArgumentType]
+    put_on_one_scale(both)  # pyright: ignore[reportArgumentType]
     assert [each.held.distance for each in both] == held
 
 
@@ -107,7 +107,7 @@ def test_halves_fill_the_picture() -> None:
 
     for preset in (wide, tall):
         half = comparison.half(preset)
-        [(_, page)] = comparison._side_by_side(preset, [Made(half, (255, 0, 0)), Made(half, (0, 0, 255))])  # pyright: ignore[reportArgumentType]
+        [(_, page)] = comparison.side_by_side(preset, [Made(half, (255, 0, 0)), Made(half, (0, 0, 255))])  # pyright: ignore[reportArgumentType]
         assert page.size == (preset.width, preset.height)
         assert page.getpixel((5, 5)) == (255, 0, 0)
         assert page.getpixel((page.width - 5, page.height - 5)) == (0, 0, 255)

@@ -16,8 +16,8 @@ from render.film.framing import project
 from render.film.story import frame
 from render.film.story.frame import Caption, Note, Over
 from render.film.story.words import TABLE, captions_of, chapters, rate_words, srt, words_in
-from render.frames.story.drawing import Drawing, _facts, _on_arrow
-from render.frames.story.telling import Telling, _without_slow, telling_of
+from render.frames.story.drawing import Drawing, _facts, is_on_arrow
+from render.frames.story.telling import Telling, telling_of, without_slow
 from render.presets import preset_named
 from shared.contract import Mount
 from shared.contract.shot import Camera, Shot
@@ -114,8 +114,8 @@ def test_a_number_with_room_is_beyond_the_tip() -> None:
     card = dark(note)
     assert card[:, 1].max() < 0.5 * HIGH
     assert card[:, 0].mean() == pytest.approx(0.5 * WIDE, abs=1.0)
-    assert not _on_arrow((300.0, 100.0, 340.0, 170.0), note, WIDE, HIGH)
-    assert _on_arrow((300.0, 185.0, 340.0, 200.0), note, WIDE, HIGH)
+    assert not is_on_arrow((300.0, 100.0, 340.0, 170.0), note, WIDE, HIGH)
+    assert is_on_arrow((300.0, 185.0, 340.0, 200.0), note, WIDE, HIGH)
 
 
 TALL = Mount(kind="stand", up=(1.0, 0.0, 0.0))
@@ -185,8 +185,8 @@ def test_lines_break_between_facts() -> None:
 
 
 def test_what_is_slower_than_a_walk_has_no_km_h() -> None:
-    assert _without_slow("crank reaches 10.8 mm/s (0.0388 km/h)") == "crank reaches 10.8 mm/s"
-    assert _without_slow("ball reaches 4.43 m/s (15.9 km/h)") == "ball reaches 4.43 m/s (15.9 km/h)"
+    assert without_slow("crank reaches 10.8 mm/s (0.0388 km/h)") == "crank reaches 10.8 mm/s"
+    assert without_slow("ball reaches 4.43 m/s (15.9 km/h)") == "ball reaches 4.43 m/s (15.9 km/h)"
 
 
 @pytest.mark.parametrize("language", sorted(TABLE))

@@ -100,7 +100,7 @@ PROGRAMS_OF_TESTS = @$(PYTHON) -m shared.system --for-tests || case "$${STRICT:-
 # pyright comes whole in its wheel; without this it asks the network whether it is the newest.
 export PYRIGHT_PYTHON_IGNORE_WARNINGS := 1
 
-# The outermost make: a stage ends with it, also when make was killed and could not tell (shared/stage/lineage.py).
+# The outermost make: a stage ends with it, also when make was killed and could not tell (shared/stage/signals.py).
 ifndef MBSD_MAKE
 export MBSD_MAKE := $(shell echo $$PPID)
 endif
@@ -253,7 +253,7 @@ install: ## uv, Python 3.13, every package at its locked version; kernels compil
 	@sh tools/install.sh
 
 libraries: install ## whether the system has what parts and pictures load; their targets ask before they begin
-	@test ! -d .venv || test -f .venv/libraries-found || { echo "error: parts and pictures need these libraries; nothing was made" >&2; exit 1; }
+	@test ! -d .venv || test -f .venv/libraries-found || { echo "error: parts and pictures need these libraries; nothing was built" >&2; exit 1; }
 
 test: install ## all tests but the slow ones; PYTEST="-k name" picks some; STRICT=1 skips none
 	$(PROGRAMS_OF_TESTS)

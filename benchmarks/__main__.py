@@ -10,7 +10,7 @@ python -m benchmarks machines         gears, a Geneva, a cam and a stiff contact
 python -m benchmarks film [--help]     what a film costs (make bench-film)
 python -m benchmarks live [--help]     from a slider of the live page to the picture (make bench-live)
 python -m benchmarks cluster          what a cluster costs, a task and a worker, only shown
-python -m benchmarks simulations       many simulations beside study, MuJoCo and Exudyn, only shown
+python -m benchmarks simulations       many simulations and single ones with events beside peers, only shown
 python -m benchmarks synthesis        lengths for a path alone, only shown
 python -m benchmarks start            the table of start-up (make bench-start)
 python -m benchmarks table            the tables again from the last run

@@ -35,10 +35,7 @@ def bars_table(rows: Sequence[Row], bars: Sequence[Bar]) -> str:
 
 def rows_table(rows: Sequence[Row]) -> str:
     """Return every code on every problem; films are left to their own section."""
-    lines = [
-        "| problem | code | version | time | times mbsd | errors | settings |",
-        "|---|---|---|---|---|---|---|",
-    ]
+    lines = ["| problem | code | version | time | times mbsd | errors | settings |", "|---|---|---|---|---|---|---|"]
     own: dict[str, float] = {}
     for row in rows:
         if row.code == "mbsd":  # the fastest, where it goes several ways

@@ -8,7 +8,7 @@ from typing import Literal
 import msgspec
 
 from shared.contract import Motion
-from shared.contract.mount import Kind, Mount
+from shared.contract.parts import Kind, Mount
 from shared.contract.shot import Shot
 
 # A look is plain data that Blender's scene and the page both read.

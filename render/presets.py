@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from shared.stage.errors import UserError
+from shared.stage.errors import UserError, did_you_mean
 from shared.stage.face import said
-from shared.stage.suggestions import did_you_mean
 
 # Presets say how large a picture is, in which aspect, and with how many samples. The active one is always printed.
 

@@ -1,4 +1,4 @@
-"""What every test file may use, and how the tests are run (tests/running/)."""
+"""Fixtures for every test file, and plugins that order and report the tests (tests/running/)."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def out_root(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture(scope="session")
 def warm() -> Iterator[Warm]:
-    """What runs commands of the project in processes that need not load the libraries."""
+    """Yield a runner of commands in processes that need not load the libraries."""
     process = Warm()
     yield process
     process.close()

@@ -22,9 +22,7 @@ from mbsd.dealing import hand
 from mbsd.dealing.connection import workers_of
 from shared.cluster.__main__ import scheduler_command, worker_command
 from shared.cluster.address import connected
-from shared.cluster.contents import content_hash
-from shared.cluster.deal import Deal
-from shared.cluster.hands import Work
+from shared.cluster.deal import Deal, Work, content_hash
 from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
@@ -71,10 +69,7 @@ def _ratio(task: Callable[..., Any], what: str) -> float:
 
 
 def _row(workers: int, tasks: int, largest: int) -> str:
-    with _cluster([[sys.executable, "-m", "benchmarks.cluster.work", "ADDRESS", str(workers)]]) as (
-        where,
-        process,
-    ):
+    with _cluster([[sys.executable, "-m", "benchmarks.cluster.work", "ADDRESS", str(workers)]]) as (where, process):
         hand.LARGEST, kept = largest, hand.LARGEST
         try:
             _deal(where, workers, work.nothing, dict.fromkeys(map(str, range(workers)), 0))  # all are known, none lacks

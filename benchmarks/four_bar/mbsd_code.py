@@ -9,7 +9,7 @@ import numpy as np
 
 import mbsd
 from benchmarks.four_bar import ANGLES, COUPLER, CRANK, GROUND, ROCKER, exact, worst
-from mbsd.kinematics import prepare as ready_to_solve
+from mbsd.kinematics import prepared as ready_to_solve
 from mbsd.kinematics.march import kinematics_at
 
 VERSION = mbsd.__version__

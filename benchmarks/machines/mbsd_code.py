@@ -14,7 +14,7 @@ from benchmarks.dynamics.mbsd_code import started
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.simulate import integrator_named
 from mbsd.kinematics.march import kinematics_at
-from mbsd.kinematics.prepare import prepare as prepared
+from mbsd.kinematics.prepared import prepare as prepared
 
 VERSION = mbsd.__version__
 TOLERANCE = 1e-7

@@ -14,7 +14,7 @@ import numpy as np
 
 import mbsd
 from benchmarks.rows import Bar, Row
-from benchmarks.simulations import OUTPUTS, PROBLEM, doors, exact, peers, stops
+from benchmarks.simulations import OUTPUTS, PROBLEM, doors, exact, peers, single, stops
 from benchmarks.simulations.mbsd_code import END, WHEN, many, study, study_in_loop
 
 ROUNDS = 3
@@ -82,7 +82,8 @@ def measured() -> tuple[list[Row], list[Bar]]:
             own[k] = min(own[k], (processor_time() - busy) / case.doors)
     rows = [_row(case, float(own[k]), float(wall[k]), ends[k], values) for k, case in enumerate(every)]
     stopped, bars = stops.measured()
-    return rows + stopped, _bars(rows, every) + bars
+    alone, more = single.measured()
+    return rows + stopped + alone, _bars(rows, every) + bars + more
 
 
 def processor_time() -> float:

@@ -1,4 +1,4 @@
-"""Efforts and motions: the efforts that a given motion takes, and a mechanism moved by efforts instead of laws.
+"""Efforts: those that a given motion takes, and a mechanism moved by efforts instead of laws.
 
     M a + J^T lam = Q + P e        J: joints alone;  P: unit directions of the actuators;  lam, e of least norm
 
@@ -13,22 +13,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mbsd.arrays.approaches import approached_along
 from mbsd.arrays.curve_branches import tabulate_along
 from mbsd.arrays.efforts_beside import fill_beside
 from mbsd.arrays.friction_along import with_friction
 from mbsd.arrays.inertias import coupled, inertia_of, weight_of
 from mbsd.arrays.laws import compiled_laws
-from mbsd.arrays.loads import pack_loads
-from mbsd.arrays.loads_along import loads_along
+from mbsd.arrays.loads import approached_along, loads_along, pack_loads
 from mbsd.arrays.packing import Packed, pack
 from mbsd.arrays.reactions import wrenches
-from mbsd.arrays.start_state import AnyModel, copied
+from mbsd.arrays.starts import AnyModel, copied
 from mbsd.arrays.states import own_states
 from mbsd.base.codes import CONSTANT
 from mbsd.base.errors import MobilityError, ModelError
 from mbsd.base.names import Suggesting, no_such, shown
-from mbsd.kinematics.limits.closed_contacts import refuse_pushing
+from mbsd.kinematics.limits.contacts import refuse_pushing
 from mbsd.kinematics.pose.phases import take_decided
 from mbsd.model.entries import Amount, add_force, amount_given
 from mbsd.model.force import Force, ForceKind
@@ -42,7 +40,7 @@ UNBALANCED = 1e-6
 
 
 def unit_direction(packed: Packed, force: Force, q: np.ndarray, time: float) -> np.ndarray:
-    """(3 nb,) generalised force of one newton (newton metre) of a force in pose q (3 nb,). Raises ModelError."""
+    """Return (3 nb,) the generalised force of one N (N m) of a force in pose q (3 nb,). Raises ModelError."""
     return _directions(packed, force, q[None], np.array([time]))[0]
 
 

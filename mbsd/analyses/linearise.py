@@ -1,4 +1,4 @@
-"""The state about which a mechanism is linearised, as the start of a copy; drivers that are inputs are released."""
+"""The state about which a mechanism is linearised, as the start of a copy without input drivers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from mbsd.analyses.efforts import with_efforts
 from mbsd.analyses.equilibrium import Equilibrium, equilibrium
 from mbsd.analyses.state_space import Linearisation
 from mbsd.analyses.state_space import linearise as linearise_start
-from mbsd.arrays.start_state import copied, started_at
+from mbsd.arrays.starts import copied, started_at
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such, shown
 from mbsd.model.mechanism import Model, names_given

@@ -13,8 +13,8 @@ import numpy as np
 from mbsd.arrays.reactions import marker_axes, marker_places
 from mbsd.base.errors import ModelError, ModelWarning
 from mbsd.base.warning import warn
-from mbsd.model.cams.profile import hermite
 from mbsd.model.force import Chamber
+from mbsd.model.laws.numbers import hermite_coefficients
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
@@ -49,7 +49,7 @@ class Placed:
         return self.chamber.cycle.sense * (state[:, self.crank] - state[:, self.frame])
 
     def since(self, q: np.ndarray) -> np.ndarray:
-        """(T,) angle of the crank since a firing (rad)."""
+        """Return (T,) angle of the crank since a firing (rad)."""
         assert self.chamber.cycle is not None
         return self.angle(q) - self.chamber.cycle.sense * self.chamber.cycle.fires_at
 
@@ -99,7 +99,7 @@ def check_pistons(packed: Packed, t: np.ndarray, q: np.ndarray, tell: bool = Tru
 
 
 def _height(packed: Packed, placed: Placed, q: np.ndarray) -> np.ndarray:
-    """(T,) of the gas (m)."""
+    """Return (T,) of the gas (m)."""
     place = marker_places(packed, q, placed.j) - marker_places(packed, q, placed.i)
     return (marker_axes(packed, q, placed.i) * place).sum(axis=1) + placed.chamber.shift
 
@@ -140,7 +140,7 @@ def phase_changes(
             continue
         h = np.diff(t)[step]
         samples = np.stack([angle, placed.angle(states[1]), placed.angle(states[2])], axis=-1)
-        quintics = hermite(h, samples[step], samples[step + 1])
+        quintics = hermite_coefficients(h, samples[step], samples[step + 1])
         low, high, way = np.zeros(len(step)), h.copy(), np.sign(angle[step + 1] - angle[step])
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
@@ -167,7 +167,7 @@ def phase_changes(
 
 
 def _passed(angle: np.ndarray, changes: tuple[float, ...], period: float) -> tuple[np.ndarray, np.ndarray]:
-    """Steps of an angle (T,) that pass a change, and at which angle."""
+    """Return steps of an angle (T,) that pass a change, and at which angle."""
     steps, wanted = [], []
     low, high = np.minimum(angle[:-1], angle[1:]), np.maximum(angle[:-1], angle[1:])
     for change in changes:

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mbsd.equations.assembly import tabulate
-from mbsd.equations.constraints.relative import AT, MARKER_I, MARKER_J
 from mbsd.equations.relative.curve_pieces import (
     CLOSED,
     COUNT,
@@ -30,6 +29,7 @@ from mbsd.equations.relative.curve_pieces import (
     WIDTH,
     foot,
 )
+from mbsd.equations.relative.equation import AT, MARKER_I, MARKER_J
 from mbsd.equations.system import LAST
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ class CurveBranches:
         return out
 
     def _across(self, row: CurveRow, x: float, y: float, vx: float, vy: float) -> float:
-        """Speed across the curve at the foot in the scratch; infinite where the point is not on it."""
+        """Return speed across the curve at the foot in the scratch; infinite where the point is not on it."""
         at = row.own
         speed = math.hypot(at[DX], at[DY])
         tx, ty = at[DX] / speed, at[DY] / speed
@@ -158,7 +158,7 @@ def tabulate_along(
     compact: np.ndarray,
     gamma: np.ndarray,
 ) -> None:
-    """``tabulate`` along a motion q, v (T, 3 nb), each pose on the branches along which its points move."""
+    """Tabulate along a motion q, v (T, 3 nb), on the branches along which points move at each pose."""
     following = CurveBranches(packed)
     if not following.rows:
         tabulate(packed.system, drives, q, v, packed.ws, phi, compact, gamma)

@@ -51,7 +51,7 @@ class Side:
     """(R,) times whose efforts follow (s)."""
 
     def efforts(self, factor: np.ndarray, beside: np.ndarray, arms: np.ndarray) -> np.ndarray:
-        """(R, k) values at the rows from those ``beside`` (N, k) at the nodes; NaN where there are none.
+        """Return (R, k) values at the rows from ``beside`` (N, k) at the nodes; NaN where there are none.
 
         ``factor`` (N + R,): D at the nodes, then at the rows. ``arms`` (k,): 1 of forces, 1/m of torques.
         """

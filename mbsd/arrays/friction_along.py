@@ -37,7 +37,7 @@ def friction_along(
 
 
 def normals_along(packed: Packed, loads: Loads, q: np.ndarray, compact: np.ndarray, lam: np.ndarray) -> np.ndarray:
-    """(T, f) normal forces of the joints with friction (N)."""
+    """Return (T, f) normal forces of the joints with friction (N)."""
     out = np.zeros((len(q), len(loads.friction)))
     if len(loads.friction):
         tabulate_normals(packed.system, loads, q, np.ascontiguousarray(compact), lam, packed.ws, out)
@@ -45,7 +45,7 @@ def normals_along(packed: Packed, loads: Loads, q: np.ndarray, compact: np.ndarr
 
 
 def friction_under(packed: Packed, loads: Loads, q: np.ndarray, v: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """(T, 3 nb) friction of joints under normal forces (T, f); zero for ground."""
+    """Return (T, 3 nb) friction of joints under normal forces (T, f); zero for ground."""
     out = np.zeros_like(q)
     if len(loads.friction):
         tabulate_friction(packed.system, loads, q, v, normal, packed.ws, out, np.zeros(len(q)))

@@ -1,9 +1,15 @@
-"""Forces as arrays: elements and terms, interactions, functions of the user, friction of joints."""
+"""Forces as arrays and along a motion: elements, interactions, user functions, joint friction.
+
+Contacts by penalty may be damped by the speed with which they began. A simulation notes it at each accepted step
+(mbsd/dynamics/prepare/prepared.py). A driven motion is known at its outputs alone; there the depth between two outputs
+is the cubic through both with their rates, and the approach is its slope where it begins to be above zero.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numba
@@ -11,18 +17,20 @@ import numpy as np
 from numba.core.dispatcher import Dispatcher
 
 from mbsd.arrays.directory import ForceRows, directory, slice_of
-from mbsd.arrays.states import first_holding
-from mbsd.base.kept import Kept
+from mbsd.arrays.states import first_holding, widened, with_states
+from mbsd.base.running import Kept
 from mbsd.compiling.callback import Callback
-from mbsd.equations.interactions import call
+from mbsd.equations.interactions import evaluation
 from mbsd.equations.interactions.law import RESULTS, STATE, address_of, switches
-from mbsd.equations.interactions.switching import APPROACHED, REMEMBERS, SIZE, SWITCHING, WIDTH
+from mbsd.equations.interactions.switching import APPROACHED, REMEMBERS, SIZE, SPEED_HERE, SWITCHING, VALUE, WIDTH
 from mbsd.equations.joint_friction import BY_RATE, GUIDE, PIN
-from mbsd.equations.loads import Loads
+from mbsd.equations.laws import Laws
+from mbsd.equations.loads import Loads, tabulate_loads
 
 if TYPE_CHECKING:
     from mbsd.arrays.directory import ForceRows
     from mbsd.arrays.packing import Packed
+    from mbsd.equations.laws import Laws
     from mbsd.model.force import Force
 
 
@@ -35,7 +43,7 @@ SHARP = 1e-9
 
 
 def pack_loads(packed: Packed) -> Loads:
-    """The loads of a packed mechanism; laws of forces are numbered after those of the drivers."""
+    """Return the loads of a packed mechanism; laws of forces are numbered after those of the drivers."""
     if packed.forces:
         return _loads(packed)
     none = _KEPT.get((), lambda: _loads(packed))
@@ -103,7 +111,7 @@ def _interactions(packed: Packed, forces: Sequence[ForceRows]) -> tuple[np.ndarr
         crank = number[interaction.crank] if interaction.crank else 0
         holding = first_holding(own.force, number) if interaction.with_states else (0, 0)
         function, law = address_of(interaction.function), own.law_row(interaction.law)
-        rows.append((i, j, law, block.start, function, call.address(), crank, *holding))
+        rows.append((i, j, law, block.start, function, evaluation.address(), crank, *holding))
     switch = np.zeros((1 + len(rows), WIDTH))
     switch[0, SWITCHING] = any(switches(interaction.function) for _, interaction, _ in every)
     switch[0, SIZE], switch[0, REMEMBERS] = packed.size, any(interaction.remembers for _, interaction, _ in every)
@@ -142,7 +150,7 @@ def pack_user_forces(packed: Packed, forces: Sequence[ForceRows]) -> tuple[np.nd
 
 
 def _callback(packed: Packed, force: Force) -> Callback:
-    """Made once for each packed mechanism, which keeps it alive."""
+    """Return the callback of a force, made once for each packed mechanism, which keeps it alive."""
     count = len(force.params["bodies"])
     return packed.specials.callback(
         f"{packed.name}: force '{force.name}'",
@@ -151,7 +159,7 @@ def _callback(packed: Packed, force: Force) -> Callback:
 
 
 def law_address(packed: Packed, force: Force) -> int:
-    """Where the law of a spring is, a function of its value and rate; see mbsd/model/forces/springs.py."""
+    """Return the address of the law of a spring, a function of value and rate (model/forces/springs.py)."""
     law = force.params["law"]
     return packed.specials.callback(
         f"{packed.name}: force '{force.name}'", lambda what: Callback(_timed(law), (1, 1), 1, what)
@@ -166,3 +174,100 @@ def _timed(law: Callable) -> Callable:
         return law(value, rate)
 
     return _TIMED.get(law, lambda: numba.njit(timed)) if isinstance(law, Dispatcher) else timed
+
+
+def remembers(loads: Loads) -> bool:
+    """Return True if any contact asks for the speed at which it began."""
+    return bool(loads.switch[0, REMEMBERS])
+
+
+def stretches(loads: Loads, approached: np.ndarray | None, count: int) -> Iterator[slice]:
+    """Yield stretches of rows 0 .. ``count`` with equal approach (T, n) (m/s), set in ``loads`` meanwhile.
+
+    With None it stays as it is.
+    """
+    if approached is None or not remembers(loads):
+        yield slice(0, count)
+        return
+    own = loads.switch[1:, APPROACHED].copy()
+    same = (approached[1:] == approached[:-1]) | (np.isnan(approached[1:]) & np.isnan(approached[:-1]))
+    edges = [0, *(np.flatnonzero(~same.all(axis=1)) + 1).tolist(), count]
+    try:
+        for first, last in pairwise(edges):
+            loads.switch[1:, APPROACHED] = approached[first]
+            yield slice(first, last)
+    finally:
+        loads.switch[1:, APPROACHED] = own
+
+
+def approached_along(
+    packed: Packed, loads: Loads, laws: Laws, t: np.ndarray, q: np.ndarray, v: np.ndarray
+) -> np.ndarray | None:
+    """Return (T, n) approach speeds of all interactions (m/s) along a motion; None if none needs them.
+
+    q, v (T, 3 nb) are given at times (T,).
+    """
+    if not remembers(loads):
+        return None
+    count, table = len(loads.switch) - 1, loads.switch
+    depth, rate = np.zeros((2, len(t), count))
+    for k in range(len(t)):
+        at, load = slice(k, k + 1), np.zeros((1, q.shape[1]))
+        tabulate_loads(packed.system, loads, laws, t[at], q[at], v[at], packed.ws, load, np.zeros(1))
+        depth[k], rate[k] = table[1:, VALUE], table[1:, SPEED_HERE]
+    packed.specials.check()
+    out = np.full((len(t), count), np.nan)
+    for c in range(count):
+        for k in range(1, len(t)):
+            inside = depth[k, c] > 0.0
+            if not inside:
+                continue
+            if depth[k - 1, c] > 0.0:
+                out[k, c] = out[k - 1, c]
+            else:
+                out[k, c] = _slope_at_zero(t[k] - t[k - 1], depth[k - 1 : k + 1, c], rate[k - 1 : k + 1, c])
+    return out
+
+
+def _slope_at_zero(h: float, depth: np.ndarray, rate: np.ndarray) -> float:
+    """Return the slope at its zero of the cubic over h (s) through ``depth`` (2,) with ``rate`` (2,).
+
+    The depth is below 0 at first and above 0 then.
+    """
+    rise, (a, b) = depth[1] - depth[0], h * rate
+    cubic = np.polynomial.Polynomial([depth[0], a, 3 * rise - 2 * a - b, a + b - 2 * rise])
+    roots = cubic.roots()
+    real = roots.real[(np.abs(roots.imag) < 1e-9) & (roots.real > -1e-9) & (roots.real < 1 + 1e-9)]
+    return float(cubic.deriv()(real.max() if len(real) else 1.0)) / h
+
+
+def loads_along(
+    packed: Packed,
+    loads: Loads,
+    laws: Laws,
+    t: np.ndarray,
+    q: np.ndarray,
+    v: np.ndarray,
+    approached: np.ndarray | None = None,
+    states: np.ndarray | None = None,
+) -> np.ndarray:
+    """Return (T, 3 nb) forces of all loads but friction along a motion q, v (T, 3 nb).
+
+    They are generalised forces, zero for ground.
+
+    ``approached`` (T, n): how fast contacts approached (m/s), where they ask for it; None: as kernels remember it now.
+    ``states`` (T, n): those of forces (SI), of a mechanism that is packed without them.
+    Raises ModelError where a function of the user fails.
+    """
+    if states is not None:
+        wide = with_states(packed)
+        wide_q, wide_v = widened(wide, q), widened(wide, v, states)
+        return loads_along(wide, pack_loads(wide), laws, t, wide_q, wide_v, approached)[:, : q.shape[1]]
+    out = np.zeros_like(q)
+    if loads.total:
+        power = np.zeros(len(t))
+        for at in stretches(loads, approached, len(t)):
+            tabulate_loads(packed.system, loads, laws, t[at], q[at], v[at], packed.ws, out[at], power[at])
+        packed.specials.check()
+        out[:, :3] = 0.0
+    return out

@@ -1,6 +1,7 @@
 """Names in, arrays out: a Model as the System the kernels read.
 
-Authors place a body's frame where it is convenient; here alone it is shifted to the centre of mass.
+Authors place a body's frame where it is convenient; here alone it is shifted to the centre of mass. Arrays of a small
+mechanism are kept for the next solve.
 """
 
 from __future__ import annotations
@@ -8,19 +9,129 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from mbsd.arrays.relative import Specials
-from mbsd.arrays.system_arrays import Parts, arrays_of
-from mbsd.base.users_function import law_of, tell_missed
+from mbsd.base.arguments import law_of, tell_missed
+from mbsd.base.running import Kept
 from mbsd.equations.products import spread_rows
-from mbsd.equations.system import System, Workspace
+from mbsd.equations.system import System, Workspace, constant_system, workspace
 from mbsd.model.force import Force, Masses
 from mbsd.model.joint import ROWS, SPECIALS, ContactKind, Joint
 from mbsd.model.laws import Motion
 from mbsd.model.mechanism import Model
+
+MOST_KEPT = 60
+"""Coordinates of mechanisms whose arrays and start are kept for the next solution."""
+SMALLEST_SIZE = 1e-12
+"""Below this (m) all joints sit at the centres of mass, and 1 m serves as size."""
+
+
+class Arrays(NamedTuple):
+    """The arrays of a mechanism; see mbsd.arrays.packing.Packed."""
+
+    system: System
+    ws: Workspace
+    com: np.ndarray
+    first_row: np.ndarray
+    markers: np.ndarray
+    force_markers: np.ndarray
+    size: float
+    constant: tuple[bytes, ...] | None
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The parts of a model that the arrays are made of."""
+
+    numbers: list[float]
+    """Gravity; mass, inertia and com of each body; x, y and angle of each marker; offsets, lengths, extents."""
+    bodies: int
+    marker_body: tuple[int, ...]
+    offsets: int
+    lengths: int
+    first_row: tuple[int, ...]
+    tables: tuple[tuple[str, tuple[tuple[int, int, int, int], ...]], ...]
+    """Constraints of each kind: markers i and j, row, motion."""
+
+
+_ARRAYS: Kept[Arrays] = Kept()
+
+
+def arrays_of(parts: Parts, specials: Specials, forces: int) -> Arrays:
+    """Return arrays whose scratch is the caller's own; the others are shared."""
+    numbers = np.array(parts.numbers, float)
+    if specials.names or 3 * (parts.bodies - 1) > MOST_KEPT:
+        return _made(parts, numbers, specials, forces)
+    own = parts.bodies, parts.marker_body, parts.offsets, parts.lengths, parts.first_row, parts.tables, forces
+    kept = _ARRAYS.get((numbers.tobytes(), *own), lambda: _made(parts, numbers, specials, forces))
+    return kept._replace(ws=Workspace(*[part.copy() for part in kept.ws]))
+
+
+def _made(parts: Parts, numbers: np.ndarray, specials: Specials, forces: int) -> Arrays:
+    body_end = 2 + 4 * parts.bodies
+    marker_end = body_end + 3 * len(parts.marker_body)
+    body = numbers[2:body_end].reshape(-1, 4)
+    marker = numbers[body_end:marker_end].reshape(-1, 3)
+    offsets, lengths, extents = np.split(numbers[marker_end:], np.cumsum([parts.offsets, parts.lengths]))
+    com = body[:, 2:].copy()
+    marker_body, first_row = np.array(parts.marker_body, np.int64), np.array(parts.first_row, np.int64)
+    joints = len(first_row) - 1
+    markers = np.arange(2 * joints).reshape(-1, 2)
+    force_markers = 2 * joints + np.arange(2 * forces).reshape(-1, 2)
+    as_table = {name: np.array(rows, np.int64).reshape(-1, 4) for name, rows in parts.tables}
+    marker_arm = marker[:, :2] - com[marker_body]
+    size = _size(marker_arm, marker_body, [*lengths, *extents])
+    special, addresses, special_numbers = specials.arrays(marker_body, size)
+    system = System(
+        mass=body[:, 0].copy(),
+        inertia=body[:, 1].copy(),
+        gravity=numbers[:2].copy(),
+        marker_body=marker_body,
+        marker_arm=marker_arm,
+        marker_axis=np.stack([np.cos(marker[:, 2]), np.sin(marker[:, 2])], axis=1),
+        moving=np.flatnonzero(marker_body),
+        directed=_directed(
+            marker_body, as_table["slot"][:, 0], as_table["along"][:, 0], special[:, 0], force_markers[:, 0]
+        ),
+        special=special,
+        address=addresses,
+        numbers=special_numbers,
+        row_body=marker_body[np.repeat(markers, np.diff(first_row), axis=0)],
+        driven=_driven(*as_table.values(), special),
+        angle_offset=offsets.copy(),
+        distance_length=lengths.copy(),
+        **as_table,
+    )
+    system = constant_system(*system)
+    own = None
+    if not len(special) and 3 * (parts.bodies - 1) <= MOST_KEPT:
+        fixed = [part.tobytes() for name, part in system._asdict().items() if name != "angle_offset"]
+        own = (*fixed, com.tobytes(), np.float64(size).tobytes())
+    ws = workspace(system, parts.first_row[-1])
+    return Arrays(system, ws, com, first_row, markers, force_markers, size, own)
+
+
+def _driven(*tables: np.ndarray) -> np.ndarray:
+    """Return (drivers, 2) row and motion of the driven rows."""
+    rows = np.concatenate([table[:, 2:4] for table in tables])
+    return rows[rows[:, 1] > 0]
+
+
+def _directed(marker_body: np.ndarray, *first_markers: np.ndarray) -> np.ndarray:
+    """Return first markers of slots, coordinates, relative poses and forces that are on moving bodies."""
+    first = np.concatenate(first_markers)
+    return np.unique(first[marker_body[first] > 0])
+
+
+def _size(marker_arm: np.ndarray, marker_body: np.ndarray, lengths: list[float]) -> float:
+    extents = [*lengths, *np.hypot(*marker_arm[marker_body > 0].T)]  # how far away the world's origin is says nothing
+    for body in np.unique(marker_body):
+        extents.append(float(np.linalg.norm(np.ptp(marker_arm[marker_body == body], axis=0))))
+    largest = float(max(extents, default=0.0))
+    return largest if largest > SMALLEST_SIZE else 1.0
 
 
 @dataclass
@@ -54,7 +165,7 @@ class Packed:
     constant: tuple[bytes, ...] | None
     """What ``numbers`` has of all but the angle offsets."""
     phases: dict[str, float] = field(default_factory=dict)
-    """Constants of meshes with play (m) by the names of their forces; see mbsd/arrays/force_phases.py."""
+    """Constants of meshes with play (m) by the names of their forces; see mbsd/arrays/starts.py."""
     states: int = 0
     """How many of the last bodies hold states of forces; see mbsd/arrays/states.py."""
     bars: dict[str, float] = field(default_factory=dict)
@@ -95,7 +206,7 @@ class Packed:
         return None if self.constant is None else (*self.constant, self.system.angle_offset.tobytes())
 
     def contact_gaps(self) -> dict[str, int]:
-        """Contacts by name, and the rows of their gaps; rows that hold joints at rest are none."""
+        """Return contacts by name, and the rows of their gaps; rows that hold joints at rest are none."""
         places = range(len(self.joints) - self.contacts, len(self.joints))
         return {
             self.joints[k].name: int(self.first_row[k]) for k in places if isinstance(self.joints[k].kind, ContactKind)
@@ -114,7 +225,7 @@ class Packed:
         return out
 
     def joint_of_row(self, row: int) -> Joint:
-        """The joint that owns a row of J."""
+        """Return the joint that owns a row of J."""
         return self.joints[int(np.searchsorted(self.first_row, row, side="right")) - 1]
 
     def rows_of(self, joint: str | int) -> range:
@@ -123,11 +234,11 @@ class Packed:
         return range(int(self.first_row[k]), int(self.first_row[k + 1]))
 
     def motion_of(self, number: int) -> int:
-        """The motion of a joint or driver by its place in ``joints``; 0 for joints."""
+        """Return the motion of a joint or driver by its place in ``joints``; 0 for joints."""
         return max(0, number + 1 - (len(self.joints) - len(self.motions)))
 
     def drives(self, times: np.ndarray) -> np.ndarray:
-        """(T, motions + 1, 3) values, rates and accelerations of all laws; index 0 is zero."""
+        """Return (T, motions + 1, 3) values, rates and accelerations of all laws; index 0 is zero."""
         out = np.zeros((len(times), len(self.motions) + 1, 3))
         for k, motion in enumerate(self.motions):
             with law_of(f"{self.name}: driver '{self.driver_names[k]}'"):
@@ -163,24 +274,24 @@ class Packed:
             tell_missed(f"{self.name}: driver '{name}'", self.motions[k])
 
     def row_scale(self) -> np.ndarray:
-        """(m,) what makes residual rows dimensionless: 1 / size for lengths, 1 for angles."""
+        """Return (m,) what makes residual rows dimensionless: 1 / size for lengths, 1 for angles."""
         scale = np.full(int(self.first_row[-1]), 1.0 / self.size)
         scale[self.system.angle[:, 2]] = 1.0
         scale[self.specials.angular_rows] = 1.0
         return scale
 
     def column_scale(self) -> np.ndarray:
-        """(n,) size of a unit step of each coordinate: ``size`` for x and y, 1 for theta."""
+        """Return (n,) size of a unit step of each coordinate: ``size`` for x and y, 1 for theta."""
         scale = np.ones((len(self.body_names) - 1, 3))
         scale[:, :2] = self.size
         return scale.ravel()
 
     def jacobian(self) -> np.ndarray:
-        """(m, n) of the last evaluation, ground's columns left out."""
+        """Return (m, n) of the last evaluation, ground's columns left out."""
         return self.spread(self.ws.jac)
 
     def spread(self, compact: np.ndarray) -> np.ndarray:
-        """Compact Jacobians (..., m, 6) as matrices (..., m, n), ground's columns left out."""
+        """Return compact Jacobians (..., m, 6) as matrices (..., m, n), ground's columns left out."""
         out = np.zeros((*compact.shape[:-1], self.coordinates + 3))
         shape = math.prod(compact.shape[:-2]), compact.shape[-2]
         whole = np.ascontiguousarray(compact, float).reshape(*shape, 6)

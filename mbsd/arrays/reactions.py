@@ -9,7 +9,7 @@ from mbsd.equations.products import tabulate_wrenches, times_columns, times_rows
 
 
 def rows_of_joints(packed: Packed, joints: np.ndarray) -> np.ndarray:
-    """Rows of J of some joints (k,), one joint after the other."""
+    """Return rows of J of some joints (k,), one joint after the other."""
     first, end = packed.first_row[joints], packed.first_row[joints + 1]
     return np.concatenate([np.zeros(0, np.int64), *map(np.arange, first, end)])
 
@@ -41,12 +41,12 @@ def wrenches(
 
 
 def _whole(array: np.ndarray) -> np.ndarray:
-    """As kernels take it."""
+    """Return an array as kernels take it."""
     return np.ascontiguousarray(array, float)
 
 
 def marker_places(packed: Packed, q: np.ndarray, marker: int) -> np.ndarray:
-    """(T, 2) world places of a marker (m) at poses q (T, 3 nb)."""
+    """Return (T, 2) world places of a marker (m) at poses q (T, 3 nb)."""
     body = packed.system.marker_body[marker]
     x, y = packed.system.marker_arm[marker]
     c, s = np.cos(q[:, 3 * body + 2]), np.sin(q[:, 3 * body + 2])
@@ -54,7 +54,7 @@ def marker_places(packed: Packed, q: np.ndarray, marker: int) -> np.ndarray:
 
 
 def marker_axes(packed: Packed, q: np.ndarray, marker: int, turned: bool = False) -> np.ndarray:
-    """(T, 2) unit x axes of a marker, y axes if ``turned``, in the world at poses q (T, 3 nb)."""
+    """Return (T, 2) unit x axes of a marker, y axes if ``turned``, in the world at poses q (T, 3 nb)."""
     x, y = packed.system.marker_axis[marker]
     if turned:
         x, y = -y, x
@@ -74,20 +74,20 @@ def relative_velocity(packed: Packed, q: np.ndarray, v: np.ndarray, i: int | Non
 
 
 def _velocity(q: np.ndarray, v: np.ndarray, body: int, place: np.ndarray) -> np.ndarray:
-    """(T, 2) of what of a body is at a world place (T, 2)."""
+    """Return (T, 2) of what of a body is at a world place (T, 2)."""
     arm = place - q[:, 3 * body : 3 * body + 2]
     return v[:, 3 * body : 3 * body + 2] + v[:, 3 * body + 2, None] * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
 
 
 def times_compact(packed: Packed, compact: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """(T, m) J x for compact J (T, m, 6) and x (T, 3 nb), whose entries of ground are zero."""
+    """Return (T, m) J x for compact J (T, m, 6) and x (T, 3 nb), whose entries of ground are zero."""
     rows, out = packed.system.row_body, np.empty(compact.shape[:2])
     times_rows(rows, not rows[:, 0].any(), _whole(compact), _whole(x), out)
     return out
 
 
 def generalised(packed: Packed, compact: np.ndarray, lam: np.ndarray) -> np.ndarray:
-    """(T, 3 nb) J^T lam for compact J (T, m, 6) and lam (T, m); ground's entries hold what ground takes."""
+    """Return (T, 3 nb) J^T lam, with what ground takes, for compact J (T, m, 6) and lam (T, m)."""
     out = np.zeros((len(lam), 3 * len(packed.body_names)))
     times_columns(packed.system.row_body, _whole(compact), _whole(lam), out)
     return out

@@ -33,7 +33,7 @@ class Specials:
     """Functions of the user; kept alive here."""
 
     def add(self, constraint: str, joint: Joint, place: tuple[int, int, int, int]) -> None:
-        """One more."""
+        """Add a constraint of relative pose."""
         self.names.append(constraint)
         self.joints.append(joint)
         self.places.append(place)
@@ -50,7 +50,7 @@ class Specials:
         return [k for k, name in enumerate(self.names) if SPECIALS[name].phased]
 
     def arrays(self, marker_body: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """The table (k, 7), the addresses (k,) and all numbers, for System. ``size``: of the mechanism (m)."""
+        """Return the table (k, 7), addresses (k,) and all numbers, for System; ``size`` of the mechanism (m)."""
         if not self.names:
             return np.zeros((0, 7), np.int64), np.zeros(0, np.int64), np.zeros(0)
         from mbsd.equations.relative.equation import address_of
@@ -78,15 +78,14 @@ class Specials:
         return [float(number) for number in joint.kind.numbers(joint.params)[nth]]
 
     def __getstate__(self) -> dict[str, Any]:
-        """Without the functions' addresses, which are of this process; see :meth:`connected`."""
+        """Return the fields without functions, whose addresses are of this process; see :meth:`connected`."""
         return self.__dict__ | {"callbacks": []}
 
     def connected(self, system: System, size: float) -> System:
-        """A system that came from elsewhere, with the addresses of this process."""
+        """Return a system that came from elsewhere, with the addresses of this process."""
         if not self.names:
             return system
-        from mbsd.equations.constraints.relative import AT
-        from mbsd.equations.relative.equation import address_of
+        from mbsd.equations.relative.equation import AT, address_of
 
         numbers = system.numbers.copy()
         for joint, place, row in zip(self.joints, self.places, system.special, strict=True):
@@ -97,7 +96,7 @@ class Specials:
         return system.changed(numbers=numbers, address=address)
 
     def callback(self, what: str, make: Callable[[str], Callback]) -> Callback:
-        """The function of the user that errors call ``what``: made once, and kept."""
+        """Return the function of the user that errors call ``what``: made once, and kept."""
         for made in self.callbacks:
             if made.what == what:
                 return made
@@ -110,7 +109,7 @@ class Specials:
             callback.check()
 
     def check_trials(self, before: float = math.inf) -> None:
-        """The same, but for overflows and the like before a time (s) up to which the motion was accepted."""
+        """Check functions, but forget overflows and the like before a time (s) that was accepted."""
         for callback in self.callbacks:
             callback.forget(before)
             callback.check()

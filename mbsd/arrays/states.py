@@ -28,7 +28,7 @@ SPACE = "\u00a0"
 
 
 def holding_names(force: Force) -> list[str]:
-    """Names of the bodies that hold the states of a force."""
+    """Return names of the bodies that hold the states of a force."""
     return [] if force.kind.states is None else [f"{force.name}{SPACE}({name})" for name in force.kind.states.names]
 
 
@@ -42,7 +42,7 @@ def first_holding(force: Force, number: Mapping[str, int]) -> tuple[int, int]:
 
 
 def with_states(packed: Packed) -> Packed:
-    """The same mechanism with a body for each state of its forces; itself where no force has any."""
+    """Return the mechanism with a body for each state of its forces; itself where no force has any."""
     names = [name for force in packed.forces for name in holding_names(force)]
     if packed.states or not names:
         return packed
@@ -62,7 +62,7 @@ def with_states(packed: Packed) -> Packed:
 
 
 def without_states(packed: Packed) -> Packed:
-    """The same mechanism without the bodies that hold states."""
+    """Return the mechanism without the bodies that hold states."""
     if not packed.states:
         return packed
     end, system = len(packed.body_names) - packed.states, packed.system
@@ -78,14 +78,14 @@ def without_states(packed: Packed) -> Packed:
 
 
 def _scratch_for(ws: Workspace, bodies: int) -> Workspace:
-    """The same scratch for another number of bodies; what equations remember stays."""
+    """Return the scratch for another number of bodies; what equations remember stays."""
     cos_sin = np.zeros((bodies, 2))
     cos_sin[:, 0] = 1.0
     return ws._replace(cos_sin=cos_sin, pose=np.zeros(3 * bodies), delta=np.zeros((2, 3 * bodies)))
 
 
 def ones_of(packed: Packed) -> np.ndarray:
-    """(n,) what a speed of 1 m/s of each body that holds a state stands for (SI)."""
+    """Return (n,) what a speed of 1 m/s of each body that holds a state stands for (SI)."""
     return np.array(
         [
             force.kind.states.one(force) / packed.size
@@ -97,12 +97,12 @@ def ones_of(packed: Packed) -> np.ndarray:
 
 
 def columns_of(packed: Packed) -> np.ndarray:
-    """(n,) columns of the states in q, v of a mechanism packed with them."""
+    """Return (n,) columns of the states in q, v of a mechanism packed with them."""
     return 3 * np.arange(len(packed.body_names) - packed.states, len(packed.body_names))
 
 
 def states_of(packed: Packed, v: np.ndarray) -> np.ndarray:
-    """(..., n) states (SI) from velocities (..., 3 nb) of a mechanism packed with them."""
+    """Return (..., n) states (SI) from velocities (..., 3 nb) of a mechanism packed with them."""
     return v[..., columns_of(packed)] * ones_of(packed)
 
 

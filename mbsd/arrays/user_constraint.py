@@ -19,8 +19,8 @@ from numba.core.dispatcher import Dispatcher
 
 from mbsd.base.arguments import LARGEST
 from mbsd.base.errors import ModelError
-from mbsd.base.kept import Kept
 from mbsd.base.names import shown
+from mbsd.base.running import Kept
 from mbsd.compiling.callback import Callback, WrongValue
 
 COMPLEX_STEP = 1e-30
@@ -32,7 +32,7 @@ TRIALS = ((0.31, -0.42, 0.53), (-0.27, 0.66, -1.1), (0.81, 0.13, 2.2))
 
 
 def derivatives(function: Callable, what: str, size: float) -> Callback:
-    """A callback that gives F, its gradient and second derivatives, ten numbers, of the relative pose.
+    """Return a callback for F, its gradient and second derivatives (ten numbers) of the relative pose.
 
     In place of the time it gets a usual length, ``size`` (m). Raises ModelError if it is no function, or if numba
     cannot compile it.

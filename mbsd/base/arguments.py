@@ -1,11 +1,9 @@
-"""Arguments of public functions: finite numbers, switches that are True or False, names that are text.
+"""Arguments of public functions: finite numbers, switches, names, functions of the user.
 
 A public function is checked by the annotations of its parameters before it runs: ``float`` takes finite numbers,
 ``bool`` True or False, ``int`` whole numbers, ``str`` text; ``| None`` allows None. What other annotations mean, the
 function checks. Text is never read as a number, nor True as 1. Raises ModelError with the mechanism or function, the
-argument and the value.
-
-Values of arguments that were left out, derived by the function that adds an entry.
+argument and the value. Functions and laws of the user are called so that errors give their name and the time.
 
 An argument that is None by default is found from the others: static friction from friction, the inertia of a bar from
 its mass and length. What comes of it stands in the params like a number that was given, but it is none: it is found
@@ -14,19 +12,129 @@ anew when another argument changes, and no file holds it.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import inspect
 import math
 import types
 import typing
+import warnings
 from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
 import numpy as np
 
-from mbsd.base.errors import ModelError
+from mbsd.base.errors import MechanismError, ModelError, ModelWarning
 from mbsd.base.names import no_such, shown
-from mbsd.base.users_function import described, from_user
+
+
+def value_at(function: Callable[[float], Any], t: float, what: str) -> float:
+    """Return ``function(t)`` as a finite float; ``what`` names it in errors.
+
+    Raises ModelError with the time (s): what the function raised is its cause, what it returned is in its text.
+    """
+    try:
+        value = function(t)
+    except Exception as error:
+        raise ModelError(f"{what} fails at t = {t:g} s: {described(error)}") from error
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
+    if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
+        raise ModelError(f"{what} gives {shown(value)} at t = {t:g} s; it must be a number")
+    try:
+        value = float(value)
+    except OverflowError:
+        value = float("inf")
+    if not abs(value) <= 1.7e308:
+        raise ModelError(f"{what} gives {value} at t = {t:g} s; it must be finite")
+    return value
+
+
+class law_of:
+    """Context that puts ``what``, a mechanism, driver or force, before the text of a law's error."""
+
+    def __init__(self, what: str) -> None:
+        self.what = what
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, _kind: object, error: BaseException | None, _traceback: object) -> None:
+        if isinstance(error, ModelError):
+            raise type(error)(f"{self.what}: {error}") from error.__cause__ or error
+        if isinstance(error, Exception) and not isinstance(error, MechanismError):
+            raise ModelError(f"{self.what}: its law fails: {described(error)}") from error
+
+
+def tell_missed(what: str, law: object) -> None:
+    """Warn of parts of a law that its fit did not resolve; ``what`` names mechanism and driver or force."""
+    missed = getattr(law, "missed", None)
+    if missed:
+        warnings.warn(f"{what}: {missed}", ModelWarning, stacklevel=5)
+
+
+def refuse_other_arguments(what: str, function: Callable[..., Any], given: str) -> None:
+    """Raise ModelError if ``function`` cannot be called with one argument, by its signature."""
+    try:
+        inspect.signature(function).bind(None)
+    except ValueError:  # compiled functions may not say what they take
+        return
+    except TypeError as error:
+        raise ModelError(f"{what} must be a function of {given}, a single argument: {error}") from None
+
+
+def named_parameters(function: Callable[..., Any]) -> dict[str, inspect.Parameter] | None:
+    """Return parameters by name; None where its signature does not say them, or it takes any name."""
+    try:
+        parameters = dict(inspect.signature(function).parameters)
+    except (TypeError, ValueError):
+        return None
+    return None if any(p.kind is p.VAR_KEYWORD for p in parameters.values()) else parameters
+
+
+def described(error: BaseException) -> str:
+    """Return type and text of what a function raised, on one line."""
+    said = " ".join(str(error).split())
+    return f"{type(error).__name__}: {said}" if said else type(error).__name__
+
+
+FROM_USER = "mbsd_from_user"
+"""Attribute of what such a function raised: it is no error of a computation."""
+
+
+def users_progress(what: str, function: Any, wanted: str, count: int = 1) -> Callable[..., None] | None:
+    """Return ``function``, which gets ``count`` arguments, as it is to be called; None stays None.
+
+    ``what`` names mechanism and argument, ``wanted`` says which arguments. Raises ModelError for what is no
+    function, or one that takes another number of arguments, as far as its signature says.
+    """
+    if function is None:
+        return None
+    if not callable(function):
+        raise ModelError(f"{what} is {shown(function)}; it must be a function of {wanted}")
+    try:
+        inspect.signature(function).bind(*[None] * count)
+    except ValueError:  # compiled functions may not say what they take
+        pass
+    except TypeError as error:
+        raise ModelError(f"{what} must be a function of {wanted}: {error}") from None
+
+    @functools.wraps(function, updated=())
+    def called(*given: Any) -> None:
+        try:
+            function(*given)
+        except Exception as error:
+            with contextlib.suppress(AttributeError):
+                setattr(error, FROM_USER, True)
+            raise
+
+    return called
+
+
+def from_user(error: BaseException) -> bool:
+    """Return True if a function of :func:`users_progress` raised it."""
+    return getattr(error, FROM_USER, False)
+
 
 F = TypeVar("F", bound=Callable[..., Any])
 C = TypeVar("C", bound=type)
@@ -39,7 +147,7 @@ SMALLEST = 1e-100
 
 
 def finite_number(what: str, value: object) -> float:
-    """``value`` as a float; raises ModelError if it is no finite number, or beyond 1e100."""
+    """Return ``value`` as a float; raises ModelError if it is no finite number, or beyond 1e100."""
     if type(value) is float and -LARGEST <= value <= LARGEST:
         return value
     if isinstance(value, bool) or not isinstance(value, NUMBERS):
@@ -52,7 +160,7 @@ def finite_number(what: str, value: object) -> float:
 
 
 def positive_number(what: str, value: object, unit: str = "") -> float:
-    """``value`` as a float above 0, in a ``unit`` that the message names; raises ModelError."""
+    """Return ``value`` as a float above 0, in a ``unit`` that the message names; raises ModelError."""
     number = finite_number(what, value)
     if number <= 0.0:
         raise ModelError(f"{what} is {number:g}{unit and ' ' + unit}; it must be positive")
@@ -60,7 +168,7 @@ def positive_number(what: str, value: object, unit: str = "") -> float:
 
 
 def not_negative_number(what: str, value: object, unit: str = "") -> float:
-    """``value`` as a float of 0 or more, in a ``unit`` that the message names; raises ModelError."""
+    """Return ``value`` as a float of 0 or more, in a ``unit`` that the message names; raises ModelError."""
     number = finite_number(what, value)
     if number < 0.0:
         raise ModelError(f"{what} is {number:g}{unit and ' ' + unit}; it cannot be negative")
@@ -68,7 +176,7 @@ def not_negative_number(what: str, value: object, unit: str = "") -> float:
 
 
 def number_pair(what: str, value: object) -> tuple[float, float]:
-    """``value`` as two floats; raises ModelError if it is anything else."""
+    """Return ``value`` as two floats; raises ModelError if it is anything else."""
     first, second = several_numbers(what, value, 2, "it must be two numbers (x, y)")
     return first, second
 
@@ -87,7 +195,7 @@ def several_numbers(what: str, value: object, count: int, wanted: str) -> tuple[
 
 
 def number_array(what: str, value: object, finite: bool = True) -> np.ndarray:
-    """``value``, nested lists of numbers or an array, as an array of floats of any shape.
+    """Return ``value``, nested lists of numbers or an array, as an array of floats of any shape.
 
     Raises ModelError naming the place of what is no number, and where ``finite``, of what is not finite.
     """
@@ -131,7 +239,7 @@ def _number(what: str, value: object) -> None:
 
 
 def whole_number(what: str, value: object, least: int = 1) -> int:
-    """``value`` as an int; raises ModelError if it is no whole number, or below ``least``."""
+    """Return ``value`` as an int; raises ModelError if it is no whole number, or below ``least``."""
     if isinstance(value, bool | np.bool_) or not isinstance(value, int | np.integer) or value < least:
         said = "above zero" if least == 1 else f"from {least} on"
         raise ModelError(f"{what} is {shown(value)}; it must be a whole number {said}")
@@ -139,14 +247,14 @@ def whole_number(what: str, value: object, least: int = 1) -> int:
 
 
 def switch(what: str, value: object) -> bool:
-    """``value`` as a bool; raises ModelError for anything else than True or False."""
+    """Return ``value`` as a bool; raises ModelError for anything else than True or False."""
     if not isinstance(value, bool | np.bool_):
         raise ModelError(f"{what} is {shown(value)}; it must be True or False")
     return bool(value)
 
 
 def text(what: str, value: object) -> str:
-    """``value``, which must be a str; raises ModelError."""
+    """Return ``value``, which must be a str; raises ModelError."""
     if not isinstance(value, str):
         raise ModelError(f"{what} is {shown(value)}; it must be a text")
     return value
@@ -170,13 +278,13 @@ ORDERED = {"Body | str", "Marker"}
 
 
 def annotation_of(parameter: inspect.Parameter) -> str:
-    """The type of a parameter as it is written, whether or not its file postpones annotations."""
+    """Return the type of a parameter as it is written, whether or not its file postpones annotations."""
     given = parameter.annotation
     return given.__name__ if isinstance(given, type) else str(given)
 
 
 def types_of(function: Callable[..., Any]) -> dict[str, tuple[Any, ...]]:
-    """The types that each parameter may have, by its name: ``float | None`` is (float, NoneType).
+    """Return the types that each parameter may have, by its name: ``float | None`` is (float, NoneType).
 
     An annotation that is not known where the function stands, as what is imported for type checkers alone, stays text.
     """
@@ -195,7 +303,7 @@ def types_of(function: Callable[..., Any]) -> dict[str, tuple[Any, ...]]:
 
 
 def checked(function: F) -> F:
-    """``function`` with its arguments checked by their annotations, before it runs."""
+    """Return ``function`` with its arguments checked by their annotations, before it runs."""
     if getattr(function, "arguments_checked", False):
         return function
     signature = inspect.signature(function)
@@ -289,7 +397,7 @@ def _telling_order(check: Callable[[str, Any], object], signature: inspect.Signa
 
 
 def in_order(name: str, signature: inspect.Signature) -> str:
-    """The arguments of a method or function of the mechanism, as they are written."""
+    """Return the arguments of a method or function of the mechanism, as they are written."""
     parameters = [p for p in signature.parameters.values() if p.name not in ("self", "m")]
     words = [f"*{p.name}" if p.kind is p.VAR_POSITIONAL else p.name for p in parameters]
     return f"the arguments are {name}({', '.join(words)})"

@@ -21,7 +21,7 @@ ALIKE = 0.6
 
 
 def no_such(what: str, name: object, known: Iterable[object]) -> str:
-    """``there is no body 'crnk', did you mean 'crank'? There is: ground, crank``.
+    """Return ``there is no body 'crnk', did you mean 'crank'? There is: ground, crank``.
 
     ``what`` says what was looked for; ``known`` are the names that there are, of which thirty are listed.
     """
@@ -36,7 +36,7 @@ def no_such(what: str, name: object, known: Iterable[object]) -> str:
 
 
 def names_in(what: str, value: object) -> list[str]:
-    """``value``, one name or a list of names, as a list; raises ModelError naming ``what`` it is for."""
+    """Return one name or a list of names as a list; raises ModelError naming ``what`` it is for."""
     parts = [value] if isinstance(value, str) else list(value) if isinstance(value, list | tuple) else [None]
     if not all(isinstance(part, str) for part in parts):
         raise ModelError(f"{what} are {shown(value)}; give a list of names")
@@ -44,7 +44,7 @@ def names_in(what: str, value: object) -> list[str]:
 
 
 def _meant(name: object, names: list[str]) -> str | None:
-    """The known name that is most like ``name``, in whatever case it is written; None if none is."""
+    """Return the known name that is most like ``name``, in whatever case it is written; None if none is."""
     if not isinstance(name, str) or not 0 < len(name) <= 200:
         return None
     small: dict[str, str] = {}
@@ -76,7 +76,7 @@ class Named(dict[str, Value], Generic[Value]):
 
 
 class UnknownAttributeError(AttributeError):
-    """An object has no attribute of this name; its words are found when they are asked for, as few are shown."""
+    """An object has no attribute of this name; its text is made when it is shown, as few are."""
 
     def __str__(self) -> str:
         thing, name = self.args

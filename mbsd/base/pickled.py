@@ -25,21 +25,21 @@ class WithFunctions:
     """Something whose fields, or the values of whose mappings, may be functions of the user."""
 
     def __getstate__(self) -> dict[str, Any]:
-        """Its fields, with functions in a form that can be pickled."""
+        """Return the fields, with functions in a form that can be pickled."""
         what = f"{type(self).__name__.lower()} '{getattr(self, 'name', '')}'"
         return {key: _held(value, what) for key, value in self.__dict__.items()}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """Functions are what they were."""
+        """Restore the fields, with functions as they were."""
         self.__dict__.update({key: _released(value) for key, value in state.items()})
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Any:
-        """A copy that holds the same functions."""
+        """Return a copy that holds the same functions."""
         return with_copied_fields(self, memo)
 
 
 def with_copied_fields(thing: Any, memo: dict[int, Any]) -> Any:
-    """A deep copy of what its ``__dict__`` holds, in about half the time that the standard library takes."""
+    """Return a deep copy of an object by its ``__dict__``, twice as fast as the standard library."""
     out = object.__new__(type(thing))
     memo[id(thing)] = out
     out.__dict__.update({key: _copied(value, memo) for key, value in thing.__dict__.items()})
@@ -65,20 +65,20 @@ class ByName:
     example: Any
 
     def __copy__(self) -> Any:
-        """Itself: there is one of each kind."""
+        """Return the kind itself: there is one of each."""
         return self
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Any:
-        """Itself."""
+        """Return the kind itself."""
         return self
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Found again by its name."""
+        """Pickle the kind by its name."""
         return kind_named, (getattr(self.example, "__module__", ""), self.name)
 
 
 def kind_named(module: str, name: str) -> Any:
-    """The kind of this name in a module. Raises ModelError."""
+    """Return the kind of this name in a module. Raises ModelError."""
     try:
         content = list(vars(importlib.import_module(module)).values())
     except (ImportError, ValueError) as error:
@@ -96,11 +96,11 @@ class Function:
         self.function, self.what = function, what
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Function:
-        """Functions are not copied."""
+        """Return the function itself: functions are not copied."""
         return self
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """By its name where that finds it, or by its code. Raises ModelError for what neither can hold."""
+        """Pickle by name where that finds it, else by code. Raises ModelError for what neither can hold."""
         try:
             pickle.dumps(self.function)
         except Exception:
@@ -121,7 +121,7 @@ def _by_code(function: Callable[..., Any], what: str) -> tuple[bytes, list[Any],
         """Leaves what belongs to mechanisms to whoever pickles these."""
 
         def persistent_id(self, obj: Any) -> int | None:
-            """The place in ``own``."""
+            """Return the place in ``own``."""
             if isinstance(obj, type) or callable(obj) or not type(obj).__module__.startswith(OWN):
                 return None
             own.append(obj)
@@ -136,13 +136,13 @@ def _by_code(function: Callable[..., Any], what: str) -> tuple[bytes, list[Any],
 
 
 def from_code(code: bytes, own: list[Any], what: str) -> Function:
-    """The function whose code this is."""
+    """Return the function whose code this is."""
 
     class Unpickler(pickle.Unpickler):
         """Finds what belongs to mechanisms among what came with it."""
 
         def persistent_load(self, pid: Any) -> Any:
-            """The thing at this place."""
+            """Return the thing at this place."""
             return own[pid]
 
     return Function(Unpickler(io.BytesIO(code)).load(), what)

@@ -67,7 +67,7 @@ def figures(value: float, digits: int = DIGITS) -> str:
 
 
 def counted(count: int, noun: str) -> str:
-    """A number of things with their noun: ``1 impact``, ``3 bodies``, ``no drivers``."""
+    """Return a number of things with their noun: ``1 impact``, ``3 bodies``, ``no drivers``."""
     several = f"{noun[:-1]}ies" if noun.endswith("y") else f"{noun}s"
     return f"{count or 'no'} {noun if count == 1 else several}"
 

@@ -19,7 +19,7 @@ from mbsd.base.errors import PACKAGE
 
 
 def warn(message: str, category: type[Warning]) -> None:
-    """``warnings.warn`` with the line of the first caller outside this package."""
+    """Warn with the line of the first caller outside this package."""
     if sys.version_info >= (3, 12):
         warnings.warn(message, category, skip_file_prefixes=PACKAGE)
     else:

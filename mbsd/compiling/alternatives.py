@@ -27,7 +27,7 @@ class Alternatives:
     """Kernels by the class of their first argument."""
 
     def __init__(self, kernels: Mapping[type, Any], otherwise: Any = None) -> None:
-        """``otherwise``: the kernel of all classes that have none of their own."""
+        """Keep kernels by class; ``otherwise`` is that of all classes that have none of their own."""
         self.kernels, self.otherwise = dict(kernels), otherwise
 
     def __call__(self, first: Any, *rest: Any) -> Any:
@@ -72,7 +72,7 @@ def choose(blocks: Iterable[ir.Block], first: Any) -> None:
 
 
 def files_added(signature: Any) -> tuple[str, ...]:
-    """Return the files of kernels that were added for classes among a signature's types, or these types, sorted."""
+    """Return the sorted files of kernels that were added for classes among a signature's types."""
     arguments: Iterable[Any] = getattr(signature, "args", signature)
     kinds = [kind.instance_class for kind in arguments if isinstance(kind, types.BaseNamedTuple)]
     return tuple(sorted({file for kind in kinds for file in _ADDED.get(kind, ())}))

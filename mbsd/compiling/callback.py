@@ -33,11 +33,10 @@ from numba.core.ccallback import CFunc
 from numba.core.dispatcher import Dispatcher
 from numba.extending import intrinsic
 
+from mbsd.base.arguments import described
 from mbsd.base.errors import MechanismError, ModelError
-from mbsd.base.kept import Kept
 from mbsd.base.names import shown
-from mbsd.base.users_function import described
-from mbsd.compiling import interrupts
+from mbsd.base.running import CALLED, Kept, was_interrupted
 
 SIGNATURE = types.void(types.float64, types.CPointer(types.float64), types.CPointer(types.float64))
 PROTOTYPE = ctypes.CFUNCTYPE(None, ctypes.c_double, ctypes.c_ssize_t, ctypes.c_ssize_t)
@@ -71,7 +70,7 @@ class Callback:
     """A user function at an address. Keep it alive as long as kernels may call it."""
 
     def __init__(self, function: Callable, parts: Sequence[int], outputs: int, what: str, timed: bool = True) -> None:
-        """``function(t, part, ...)`` with parts of the given lengths, giving ``outputs`` numbers.
+        """Make ``function(t, part, ...)``, with parts of these lengths and ``outputs`` numbers, callable.
 
         ``what`` names the function in errors: mechanism and joint or force. ``timed``: the time it gets is that of the
         motion. Raises ModelError if it is no function, or if numba cannot compile it.
@@ -154,7 +153,7 @@ class Callback:
         failed: BaseException | None = None
         try:
             out[:] = self._values(t, copied)
-            if interrupts.taken():
+            if was_interrupted():
                 raise KeyboardInterrupt
             if all(map(math.isfinite, out)):
                 return
@@ -165,7 +164,7 @@ class Callback:
             self._error = failed
             self._failure[0], self._failure[1], self._failure[2:] = 1.0, t, copied
 
-    interrupts.CALLED.update((_run.__code__,))
+    CALLED.update((_run.__code__,))
 
     def _view(self, address: int, length: int) -> np.ndarray:
         key = address, length
@@ -174,10 +173,10 @@ class Callback:
             self._views[key] = np.frombuffer(buffer, np.float64) if length else np.zeros(0)
         return self._views[key]
 
-    interrupts.CALLED.update((_view.__code__,))
+    CALLED.update((_view.__code__,))
 
     def _compile(self) -> CFunc:
-        """The numba function in a frame that splits the input and remembers a failure."""
+        """Return the numba function in a frame that splits the input and remembers a failure."""
         function, count, outputs = _spread(self.function, self.parts), sum(self.parts), self.outputs
         scalar, failure = outputs == 1, self._failure.ctypes.data
 
@@ -226,7 +225,7 @@ _FRAMES: Kept[tuple[CFunc, np.ndarray]] = Kept()
 
 
 def _spread(function: Any, parts: tuple[int, ...]) -> Any:
-    """``function(t, part, ...)`` as a compiled function of t and one array."""
+    """Return ``function(t, part, ...)`` as a compiled function of t and one array."""
     ends = [int(end) for end in np.cumsum((0, *parts))]
     pick = tuple(_picker(a, b) for a, b in pairwise(ends))
     if len(pick) == 0:
@@ -251,7 +250,7 @@ def _picker(begin: int, end: int) -> Any:
 
 @intrinsic
 def _pointer(typing, address):  # pyright: ignore[reportUnusedParameter]
-    """A whole number as a pointer to numbers."""
+    """Return a whole number as a pointer to numbers."""
     result = types.CPointer(types.float64)
 
     def code(context, builder, signature, arguments):  # pyright: ignore[reportUnusedParameter]

@@ -11,6 +11,8 @@ arrays changes no field.
 
 Functions of numba's own target may call kernels, which then get their arguments in this way. A kernel that hands an
 array over to such a function is refused when it is compiled.
+
+:func:`table` is a view of an array's part as a table: numba's own reshape takes 40 ns, this takes none.
 """
 
 from __future__ import annotations
@@ -18,11 +20,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import numba
 from numba.core import cgutils, types
 from numba.core.cpu import CPUContext
 from numba.core.datamodel import ArgPacker, DataModelManager, default_manager
 from numba.core.datamodel.models import ArrayModel, DataModel
 from numba.core.imputils import user_function
+from numba.extending import intrinsic
 
 
 class _ArrayModel(ArrayModel):
@@ -35,7 +39,7 @@ class _ArrayModel(ArrayModel):
         self._passed = tuple(map(self.get_field_position, passed if plain else self._fields))
 
     def get_argument_type(self) -> Any:
-        """Types of what is handed over."""
+        """Return types of what is handed over."""
         return tuple(self._models[k].get_argument_type() for k in self._passed)
 
     def as_argument(self, builder: Any, value: Any) -> Any:
@@ -43,7 +47,7 @@ class _ArrayModel(ArrayModel):
         return tuple(self._models[k].as_argument(builder, self.get(builder, value, k)) for k in self._passed)
 
     def from_argument(self, builder: Any, value: Any) -> Any:
-        """The array again."""
+        """Return the array again."""
         made = cgutils.ir.Constant(self.get_value_type(), None)
         for k, part in zip(self._passed, value, strict=True):
             made = self.set(builder, made, self._models[k].from_argument(builder, part), k)
@@ -223,5 +227,41 @@ def refuse_others(caller: Any, called: Any) -> None:
 
 
 def _kind(function: Any) -> str:
-    """The type of a function in machine code."""
+    """Return the type of a function in machine code."""
     return str(getattr(function, "global_value_type", function.type))
+
+
+if not numba.config.DISABLE_JIT:  # pyright: ignore[reportPrivateImportUsage, reportAttributeAccessIssue]
+
+    @intrinsic
+    def table(typing, array, start, rows, width):  # pyright: ignore[reportUnusedParameter, reportRedeclaration]
+        """Return (rows, width) of a contiguous array (n,) from ``start`` on; nothing checks its end."""
+        made = types.Array(array.dtype, 2, "C")
+
+        def code(context, builder, signature, arguments):
+            source = context.make_array(signature.args[0])(context, builder, arguments[0])
+            integer = context.get_value_type(types.intp)
+            start, rows, width = (
+                context.cast(builder, value, kind, types.intp)
+                for value, kind in zip(arguments[1:], signature.args[1:], strict=True)
+            )
+            size = integer(context.get_abi_sizeof(context.get_data_type(array.dtype)))
+            view = context.make_array(made)(context, builder)
+            context.populate_array(
+                view,
+                data=builder.gep(source.data, [start]),
+                shape=cgutils.pack_array(builder, [rows, width]),
+                strides=cgutils.pack_array(builder, [builder.mul(width, size), size]),
+                itemsize=size,
+                meminfo=None,
+                parent=None,
+            )
+            return view._getvalue()
+
+        return made(array, start, rows, width), code
+
+else:
+
+    def table(array, start, rows, width):
+        """Return (rows, width) of a contiguous array (n,), from ``start`` on."""
+        return array[start : start + rows * width].reshape((rows, width))

@@ -30,10 +30,9 @@ from typing import Any
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _Cache, _CacheLocator
 
 from mbsd.compiling.alternatives import files_added, kernel_for
-from mbsd.compiling.kernel_files import KernelFiles
+from mbsd.compiling.kernel_files import SHIPPED, KernelFiles, tell_of_other_kernels
 from mbsd.compiling.kernel_library import Apart
 from mbsd.compiling.lazy_kernel import cell_of
-from mbsd.compiling.shipped_kernels import SHIPPED, tell_of_other_kernels
 
 try:
     import fcntl
@@ -43,10 +42,7 @@ except ImportError:  # Windows
 LOG = logging.getLogger("mbsd")
 _PACKAGE = Path(__file__).parent.parent
 _HERE = _PACKAGE.parent
-_ABOUT_THE_CACHE = {
-    str(_PACKAGE / "compiling" / name)
-    for name in ("kernel_cache.py", "kernel_files.py", "shipped_kernels.py", "notice.py")
-}
+_ABOUT_THE_CACHE = {str(_PACKAGE / "compiling" / name) for name in ("kernel_cache.py", "kernel_files.py", "notice.py")}
 """Files that decide where code is kept and what is said, not what it does."""
 KEPT = 4
 """So many versions of one file's kernels are kept."""
@@ -73,7 +69,7 @@ def cache_root() -> Path:
 
 
 def _parents() -> Iterator[Path]:
-    """Folders that may be writable, the best first."""
+    """Yield folders that may be writable, the best first."""
     given, user_cache = os.environ.get("NUMBA_CACHE_DIR"), os.environ.get("XDG_CACHE_HOME")
     if given:
         yield Path(given)
@@ -135,7 +131,7 @@ def _read(path: str) -> tuple[bytes, tuple[tuple[str, tuple[str, ...]], ...]]:
 
 
 def _sources(path: str) -> Iterator[str]:
-    """The file of a kernel and, over and over, what it imports: of this package and from beside that file."""
+    """Yield the file of a kernel and all it imports, of this package and from beside that file."""
     waiting, seen, within = [path], {path}, (str(_PACKAGE) + os.sep, str(Path(path).parent) + os.sep)
     while waiting:
         current = waiting.pop()
@@ -153,7 +149,7 @@ def _sources(path: str) -> Iterator[str]:
 
 @cache
 def made_of(path: str) -> str:
-    """A hash of all sources that the kernels of a file are made of."""
+    """Return a hash of all sources that the kernels of a file are made of."""
     digest = hashlib.sha256()
     for source in sorted(_sources(path), key=_name):
         digest.update(_name(source).encode() + b"\0" + _read(source)[0])
@@ -161,7 +157,7 @@ def made_of(path: str) -> str:
 
 
 def _name(path: str) -> str:
-    """A path that is the same on every machine, for files of the package."""
+    """Return a path that is the same on every machine, for files of the package."""
     return Path(path).relative_to(_HERE).as_posix() if path.startswith(str(_PACKAGE) + os.sep) else path
 
 
@@ -169,7 +165,7 @@ class _Locator(_CacheLocator):
     """Says where numba keeps the code of one function."""
 
     def __init__(self, py_func: Callable[..., Any], py_file: str, root: Path, added: tuple[str, ...] = ()) -> None:
-        """``added``: files of kernels of classes that were added (alternatives.py); their code has a folder of its own,
+        """Place the code of a function; ``added`` kernels of other classes have a folder of their own,
         as numba's index cannot be read where such a class is missing.
         """
         self._line = py_func.__code__.co_firstlineno
@@ -181,7 +177,7 @@ class _Locator(_CacheLocator):
         self._path = str(root / f"{name[-80:]}-{self._stamp}")
 
     def get_cache_path(self) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
-        """The folder."""
+        """Return the folder."""
         return self._path
 
     def get_source_stamp(self) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
@@ -189,12 +185,12 @@ class _Locator(_CacheLocator):
         return self._stamp
 
     def get_disambiguator(self) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
-        """Functions of one name in one file differ by their line."""
+        """Return the line of a function, by which functions of one name in one file differ."""
         return str(self._line)
 
     @classmethod
     def from_function(cls, py_func: Callable[..., Any], py_file: str) -> _Locator | None:
-        """None for functions without a file, such as those of a notebook."""
+        """Return the locator; None for functions without a file, such as those of a notebook."""
         if not os.path.isfile(py_file):
             return None
         return cls._with_folder(cls(py_func, py_file, cache_root()))
@@ -263,7 +259,7 @@ class _Results(CompileResultCacheImpl):
         return called, cells, own
 
     def rebuild(self, target_context: Any, payload: Any) -> Any:
-        """From what was read."""
+        """Return the compiled function from what was read."""
         called, cells, own = payload
         calls = {}
         made = [
@@ -283,7 +279,7 @@ class _Results(CompileResultCacheImpl):
 
 
 def _place(dispatcher: Any) -> tuple[str, str]:
-    """Module and name of a kernel."""
+    """Return module and name of a kernel."""
     return dispatcher.py_func.__module__, dispatcher.py_func.__qualname__
 
 
@@ -309,7 +305,7 @@ class _Files(FunctionCache):
 
 @contextmanager
 def _alone_in(folder: str) -> Iterator[None]:
-    """No other process saves in ``folder`` meanwhile: numba would give two signatures the same file."""
+    """Lock ``folder`` against other processes: numba would give two signatures the same file."""
     if fcntl is None:
         yield
         return
@@ -363,7 +359,7 @@ class KernelCache(_Cache):
         return None if self._files is None else self._files.cache_path
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """The compiled function, or None."""
+        """Return the compiled function, or None."""
         if not self._enabled:
             return None
         if added := files_added(sig):
@@ -392,7 +388,7 @@ class KernelCache(_Cache):
             _tell_of_full_disk(str(cache_root()), error.strerror or str(error))
 
     def enable(self) -> None:
-        """Use it."""
+        """Do nothing: the cache is always on."""
         self._enabled = True
 
     def disable(self) -> None:
@@ -400,6 +396,6 @@ class KernelCache(_Cache):
         self._enabled = False
 
     def flush(self) -> None:
-        """Forget all."""
+        """Do nothing: what is kept stays."""
         if self._files is not None:
             self._files.flush()

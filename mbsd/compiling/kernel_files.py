@@ -4,21 +4,27 @@ numba writes an index (.nbi) and a data file (.nbc) for each function, both pick
 nor checks what it reads, so after a power cut every later run would end in an EOFError. Here each file ends with a
 mark and the SHA-256 of what stands before it, which unpickling passes over. A file without that mark is one of numba's
 own or of an older version; it counts if it can be unpickled.
+
+Compiled code that came in the wheel stands in ``SHIPPED``; ``MADE_FOR`` says for which Python, numba and processor.
 """
 
 from __future__ import annotations
 
 import hashlib
 import io
+import json
 import logging
 import os
 import pickle
+import platform
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numba
 from numba.core.caching import IndexDataCacheFile
 
 LOG = logging.getLogger("mbsd")
@@ -32,7 +38,7 @@ class KernelFiles(IndexDataCacheFile):
     """Index and data files of one function."""
 
     def _load_index(self) -> dict[Any, str]:
-        """The data file of each signature; empty if the index is missing, damaged or cannot be read."""
+        """Return the data file of each signature; empty if the index is missing, damaged or cannot be read."""
         return self._read_or_removed(Path(self._index_path), super()._load_index) or {}
 
     def _load_data(self, name: str) -> Any:
@@ -96,3 +102,31 @@ def tell_of_damage(path: str, reason: str) -> None:
     _TOLD.append(path)
     left = "; it cannot be removed, so install mbsd again" if os.path.lexists(path) else ""
     LOG.warning("mbsd: %s is damaged (%s); its kernel is compiled again%s", path, reason, left)
+
+
+SHIPPED = Path(__file__).parent.parent / "kernels"
+"""Folders as in mbsd/compiling/kernel_cache.py; there is none in a clone, nor in a wheel without kernels."""
+MADE_FOR = SHIPPED / "made_for.json"
+"""What it was compiled for, as :func:`here` says it."""
+
+
+def here() -> dict[str, str]:
+    """Return what compiled code depends on beside its sources."""
+    return {
+        "Python": platform.python_version().rpartition(".")[0],
+        "numba": numba.__version__,
+        "system": platform.system(),
+        "processor": platform.machine(),
+    }
+
+
+@cache
+def tell_of_other_kernels() -> None:
+    """Log, once, why the wheel's kernels do not serve here, if they do not."""
+    try:
+        made_for = json.loads(MADE_FOR.read_text())
+    except (OSError, ValueError):
+        made_for = {}
+    others = [f"{what} {made_for.get(what)} (here {it})" for what, it in here().items() if made_for.get(what) != it]
+    if others:
+        LOG.warning("mbsd: the kernels of its wheel are for %s, so they are compiled anew", ", ".join(others))

@@ -64,7 +64,7 @@ class KernelLibrary(JITCodeLibrary):
         """Cells of kernels that it compiles when it calls them, by name (lazy_kernel.py)."""
 
     def note_cell(self, cell: Any) -> None:
-        """Code of this library names the cell."""
+        """Note that code of this library names the cell."""
         self.cells[cell.name] = cell
 
     def finalize(self) -> None:
@@ -92,11 +92,11 @@ class KernelLibrary(JITCodeLibrary):
         self._finalized = True
 
     def own_module(self) -> Any:
-        """For linking into another library of ours."""
+        """Return the module for linking into another library of ours."""
         return super()._get_module_for_linking()
 
     def _get_module_for_linking(self) -> Any:
-        """For linking into another engine's: with all that it calls."""
+        """Return the module with all that it calls, for linking into another engine's."""
         whole = self.own_module()
         if self.calls:
             whole = whole.clone()
@@ -107,7 +107,7 @@ class KernelLibrary(JITCodeLibrary):
         return whole
 
     def serialize_using_object_code(self) -> Any:
-        """Without what it calls, which has a file of its own."""
+        """Return the library without what it calls, which has a file of its own."""
         self._ensure_finalized()
         module = self.own_module().as_bitcode()
         return (
@@ -118,7 +118,7 @@ class KernelLibrary(JITCodeLibrary):
 
     @classmethod
     def _unserialize(cls, codegen: Any, state: Any) -> Any:
-        """From what was kept."""
+        """Return the library from what was kept."""
         name, kind, data = state
         if kind != LINKED:
             return super()._unserialize(codegen, state)
@@ -129,11 +129,11 @@ class KernelLibrary(JITCodeLibrary):
         return library
 
     def _optimize_functions(self, ll_module: Any) -> None:
-        """Not here: the whole module is optimised once, at the end."""
+        """Do nothing: the whole module is optimised once, at the end."""
         ll_module.data_layout = self._codegen._data_layout
 
     def _optimize_final_module(self) -> None:
-        """Once: numba's first, cheap round serves reference counts, of which kernels have none."""
+        """Optimise once: numba's first, cheap round serves reference counts, of which kernels have none."""
         manager = self._codegen._module_pass_manager()
         if isinstance(manager, tuple):
             manager[0].run(self._final_module, manager[1])
@@ -153,5 +153,5 @@ class KernelCode(JITCPUCodegen):
         return ""
 
     def _pass_builder(self, **options: Any) -> Any:
-        """Without vectors: loops of three to twelve turns gain nothing from two numbers at a time."""
+        """Return passes without vectors: loops of three to twelve turns gain nothing from them."""
         return super()._pass_builder(**options | {"loop_vectorize": False, "slp_vectorize": False})

@@ -85,7 +85,7 @@ class _Worker(InlineWorker):
         return callee_ir, blocks, renamed, new
 
     def run_untyped_passes(self, func: Callable[..., Any], enable_ssa: bool = False) -> Any:
-        """The code of ``func``, which callers copy."""
+        """Return the code of ``func``, which callers copy."""
         if func not in _READ:
             flags = self.flags
             self.flags = flags.copy()  # numba switches SSA off in them
@@ -103,7 +103,7 @@ class _Inline(InlineInlinables):
     _name = "mbsd_inline_inlinables"
 
     def run_pass(self, state: Any) -> Literal[True]:
-        """As numba's."""
+        """Run the pass as numba does."""
         worker = _Worker(state.typingctx, state.targetctx, state.locals, state.pipeline, state.flags, None)
         blocks, modified = state.func_ir.blocks, False
         worker.first = state.args[0] if state.args else None
@@ -145,14 +145,14 @@ class KernelCompiler(compiler.Compiler):
     """Return True if callers contain the compiled kernel and nobody else runs it."""
 
     def define_pipelines(self) -> list[Any]:
-        """One."""
+        """Return the one pipeline."""
         managers = [_with_ours(manager) for manager in super().define_pipelines()]
         for manager in managers:
             manager.finalize()
         return managers
 
     def compile_extra(self, func: Callable[..., Any]) -> Any:
-        """As numba, under a name that only depends on the function where it stands at the top of a module."""
+        """Compile as numba does, under a name that depends only on a function at the top of a module."""
         identity = bytecode.FunctionIdentity.from_function(func)
         if "<" not in identity.func_qualname:
             where = f"{identity.modname}.{identity.func_qualname}:{identity.firstlineno}"

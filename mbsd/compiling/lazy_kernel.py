@@ -19,7 +19,7 @@ import llvmlite.binding as llvm
 from numba.core import cgutils, types
 from numba.extending import intrinsic
 
-from mbsd.compiling.interrupts import CALLED
+from mbsd.base.running import CALLED
 
 LOG = logging.getLogger("mbsd")
 COMPILE = "mbsd.compile"
@@ -56,7 +56,7 @@ _BY_PLACE: dict[int, Cell] = {}
 
 
 def cell_of(dispatcher: Any, arguments: Sequence[Any], returns: Any) -> Cell:
-    """The cell of a kernel for one signature; code that names it can be loaded from now on."""
+    """Return the cell of a kernel for one signature; code that names it can be loaded from now on."""
     function = dispatcher.py_func
     what = f"{function.__module__}.{function.__qualname__}:{function.__code__.co_firstlineno}{tuple(arguments)}"
     name = f"mbsd.cell.{hashlib.sha256(what.encode()).hexdigest()[:20]}"
@@ -110,7 +110,7 @@ def by_cell(dispatcher: Any, returns: Any) -> Any:
 
 
 def _through_cell(dispatcher: Any) -> Callable[..., Any]:
-    """numba's code generator of a call."""
+    """Return numba's code generator of a call."""
     byte = cgutils.ir.IntType(8).as_pointer()
     status = cgutils.ir.IntType(32)
 

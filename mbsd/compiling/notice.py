@@ -33,7 +33,7 @@ class CompileNotice(Listener):
         self._timer: threading.Timer | None = None
 
     def on_start(self, event: Event) -> None:
-        """A kernel begins to compile, perhaps for another one."""
+        """Start the timer: a kernel begins to compile, perhaps for another one."""
         if not _ours(event):
             return
         self._depth += 1
@@ -43,7 +43,7 @@ class CompileNotice(Listener):
             self._timer.start()
 
     def on_end(self, event: Event) -> None:
-        """It is compiled."""
+        """Stop the timer: a kernel is compiled."""
         if not _ours(event):
             return
         self._depth -= 1
@@ -71,5 +71,5 @@ def _module(event: Event) -> str:
 
 
 def give_notice() -> None:
-    """From now on, in this process."""
+    """Give notice from now on, in this process."""
     register("numba:compile", CompileNotice())

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.base.arguments import described
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
-from mbsd.base.users_function import described
 from mbsd.derivatives.solution_rows import rows_of
 from mbsd.dynamics.measures.kinds import Measure
 from mbsd.dynamics.measures.quantities import ACCELERATIONS, Motions, quantity_named

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.base.users_function import refuse_other_arguments
+from mbsd.base.arguments import refuse_other_arguments
 from mbsd.base.warning import quiet
 from mbsd.derivatives.asked import reads_bodies, reads_forces
 from mbsd.dynamics.measures.kinds import Measure

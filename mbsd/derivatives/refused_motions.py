@@ -13,8 +13,7 @@ from mbsd.derivatives.numbers.terms import Along, Terms
 from mbsd.derivatives.numbers.variants import Variant, Variants
 from mbsd.dynamics.prepare.inertia import USUAL
 from mbsd.dynamics.repeated import Course
-from mbsd.equations.constraints.relative import AT
-from mbsd.equations.relative.equation import WRAPS
+from mbsd.equations.relative.equation import AT, WRAPS
 
 KEPT = 1e-4
 """Part of the sizes of the mechanism and of a number by which this may move what must stay: rounding is less."""

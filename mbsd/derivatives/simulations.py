@@ -6,7 +6,7 @@ stretches from event to event.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -16,8 +16,8 @@ from mbsd.arrays.packing import Packed
 from mbsd.base.errors import SimulationError
 from mbsd.derivatives.asked import OfBodies
 from mbsd.derivatives.driven.sweeps import displaced, extent
-from mbsd.derivatives.driven.tangents import Tangent, has_kinks
-from mbsd.derivatives.free.free_tangents import FreeTangents
+from mbsd.derivatives.driven.tangents import Tangent, by_numbers, has_kinks
+from mbsd.derivatives.free.free_tangents import AT_ONCE, FreeTangents
 from mbsd.derivatives.free.guards import End, contacts_of, refuse_contact_at_start, unshared, ways_of
 from mbsd.derivatives.free.indexing import held_between, solve_ends, unwatched
 from mbsd.derivatives.free.jumps import Jump, jumps_of
@@ -26,7 +26,7 @@ from mbsd.derivatives.free.mesh import ROUNDING, apart, first_edges, looked_at, 
 from mbsd.derivatives.free.step_errors import Finish, refined_to_error
 from mbsd.derivatives.free.stretch import Stretch, Tangents, joined
 from mbsd.derivatives.numbers.straight_variants import variants_beside
-from mbsd.derivatives.numbers.terms import Along
+from mbsd.derivatives.numbers.terms import Along, Left
 from mbsd.derivatives.numbers.variants import ALLOWED, FAR, KINKED, SECOND, TINY, Variants, Variation, models_of
 from mbsd.derivatives.refused_motions import refuse, refuse_opened, refuse_parted
 from mbsd.derivatives.smooth.independent_tangents import IndependentTangents, suits
@@ -255,12 +255,16 @@ class SimulationTangents:
             if terms is not self.terms:
                 solve_ends(terms, along, self.stretch_rows(along, a), a, b)
         jumps: list[Jump] = [] if whole.solution is None else jumps_of(self, whole.solution, along, edges)
-        if whole.solution is not None:
-            refuse_contact_at_start(self.terms, self.variants, along, q, v, whole.solution.events)
+        changes = None if whole.solution is None else self._changes(along, compact, edges)
         for k, (a, b) in enumerate(pairwise(edges)):
-            at = slice(a, b)
+            at, ends = slice(a, b), None
             stretch = self._stretch(along.take(at), compact[at], asked[at], known[at])
             stretch.solved = whole.solution is not None
+            if changes is not None and whole.solution is not None:
+                own, ends = next(changes)
+                stretch.own = own if held[k][0] is self.terms else None
+                if k == 0:
+                    refuse_contact_at_start(self.terms, self.variants, along, q, v, ends, whole.solution.events)
             if known[at].sum() % NODES != 1:
                 raise SimulationError(
                     f"{self.m.name}: derivatives: events from t = {whole.t[a]:.9g} s on come at other times when they "
@@ -272,14 +276,36 @@ class SimulationTangents:
             parts.append(made.asked)
             parts[-1].lam[..., shared[k]] = np.nan  # how contacts at rest share their friction changes, too
             q, v = made.q, made.v
-            if k < len(jumps):
+            if k < len(jumps) and ends is not None:
                 last = np.flatnonzero(known[at])[-NODES - 1 :] + a
                 pace = LATEST @ along.lam[last] / (along.t[last[-1]] - along.t[last[0]])
-                q, v, times_moved = jumps[k].across(End(q, v, made.lam, pace))
+                q, v, times_moved = jumps[k].across(End(q, v, made.lam, pace, ends))
                 if jumps[k].ends:
                     self.ends = times_moved
         again = np.unique(rows, return_inverse=True)[1]  # two outputs may be nearer to an event than rounding
         return Tangents(*(part[:, again] for part in joined(parts).parts())), np.concatenate(errors)
+
+    def _changes(self, along: Along, compact: np.ndarray, edges: list[int]) -> Iterator[tuple[Left | None, Left]]:
+        """By stretch, how the equations change with the numbers at the held motion, and at its first and last node.
+
+        Short stretches are evaluated together; the first is None of a long one.
+        """
+        first = 0
+        for k, edge in enumerate(edges[1:], 1):
+            if k < len(edges) - 1 and edges[k + 1] - edges[first] <= AT_ONCE:
+                continue
+            start, whole = edges[first], None
+            if edge - start <= AT_ONCE:
+                at = slice(start, edge)
+                whole = by_numbers(self.terms, along.take(at), self.variants, compact[at])
+            for a, b in pairwise(edges[first : k + 1]):
+                if whole is None:
+                    at = np.array([a, b - 1])
+                    yield None, by_numbers(self.terms, along.take(at), self.variants, compact[at])
+                else:
+                    own = whole.each(lambda part, here=slice(a - start, b - start): part[:, here])
+                    yield own, own.each(lambda part: part[:, [0, -1]])
+            first = k
 
     def _unshare(self, along: Along, compact: np.ndarray, edges: list[int]) -> list[list[int]]:
         """Let rows that hold carry all friction at rest; returns the rows that share it, of each stretch."""

@@ -20,7 +20,7 @@ from mbsd.arrays.packing import Packed
 from mbsd.base.errors import SimulationError
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.kinematics.change_points.assemblies import APART
-from mbsd.kinematics.change_points.sides import NEAR, sides_beside
+from mbsd.kinematics.change_points.passages import NEAR, sides_beside
 from mbsd.results.solution import Beside, Solution
 
 SUSPECT = 0.1

@@ -34,6 +34,9 @@ What has a default, which is that of the plane:
     keep_row(dyn, scratch, out, k)                keep output k as the pose before an unclear one
     join_rows(dyn, scratch, out, k, apart)        put output k between the pose kept and its own
     record_here(dyn, scratch, state, out)         write the next output from the state itself, which stands at its time
+    observe(dyn, state, part, c)                  the number of a state (2, n) that a measure of many runs waits for
+
+What functions of the user read of a state is chosen by the class of their arrays (events/users.py).
 
 What the loop of events needs beside (reference coordinates):
 
@@ -112,6 +115,11 @@ def _record_here(dyn, scratch, state, out):
 
 
 @inlined
+def _observe(dyn, state, part, c):
+    return state[part, c]
+
+
+@inlined
 def _keep_row(dyn, scratch, out, k):
     pass
 
@@ -140,6 +148,7 @@ record_all = alternatives({Embedding: equations.record_all}, _record)
 keep_row = alternatives({Embedding: equations.keep_row}, _keep_row)
 join_rows = alternatives({Embedding: equations.join_rows}, _join_rows)
 record_here = alternatives({Embedding: equations.record_here}, _record_here)
+observe = alternatives({}, _observe)
 measure = alternatives({Dynamics: projection.measure})
 measure_gaps = alternatives({Dynamics: projection.measure_gaps})
 along = alternatives({Dynamics: projection.along})

@@ -19,15 +19,15 @@ import mbsd.dynamics.integrators
 from mbsd.arrays.chambers import check_pistons, phase_changes
 from mbsd.arrays.curve_branches import tabulate_along
 from mbsd.arrays.friction_along import friction_along
-from mbsd.arrays.loads_along import loads_along
+from mbsd.arrays.loads import loads_along
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import wrenches
 from mbsd.arrays.states import states_of, without_states
+from mbsd.base.arguments import users_progress
 from mbsd.base.errors import InitialConditionWarning, ModelError, SimulationError
 from mbsd.base.names import no_such
-from mbsd.base.users_function import users_progress
+from mbsd.base.running import keeping_interrupts
 from mbsd.base.warning import warn
-from mbsd.compiling.interrupts import kept
 from mbsd.dynamics.change_points import near_singular, with_efforts_beside
 from mbsd.dynamics.events.driver import EventSteps
 from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
@@ -40,7 +40,7 @@ from mbsd.dynamics.runs.run import AUTO, FORMULATIONS, INDEPENDENT, Recording, R
 from mbsd.dynamics.runs.steps import step_to
 from mbsd.dynamics.state import ACCEPTED, NEXT, TIME, WORK, Output, State
 from mbsd.dynamics.switches import standing
-from mbsd.equations.left_over import leave
+from mbsd.equations.products import leave
 from mbsd.kinematics.limits.joints import refuse_passed
 from mbsd.kinematics.multipliers import JACOBIAN_NUMBERS
 from mbsd.model.event import Event
@@ -57,7 +57,7 @@ Progress = Callable[[float], None] | None
 def follow(run: Run, times: np.ndarray, events: list[Event], event_rows: bool, progress: Progress) -> Recording:
     """Simulate from the consistent start to the last of ``times`` (s)."""
     ready = run.ready
-    with kept():
+    with keeping_interrupts():
         state, out = ready.begun(times)
         ready.approaches.forget()
         if run.formulation == INDEPENDENT or not (events or ready.is_switched):

@@ -8,29 +8,40 @@ from __future__ import annotations
 import numpy as np
 
 from mbsd.compiling.jit import apart, inlined, kernel
-from mbsd.equations.constraints import along, angle, distance, point, slot
-from mbsd.equations.constraints import relative as special
-from mbsd.equations.markers import move, place
+from mbsd.equations.constraints import (
+    along_gamma,
+    along_rows,
+    angle_gamma,
+    angle_rows,
+    distance_gamma,
+    distance_rows,
+    point_gamma,
+    point_rows,
+    slot_gamma,
+    slot_rows,
+)
+from mbsd.equations.relative.equation import relative_gamma, relative_rows
+from mbsd.equations.system import move, place
 
 
 @inlined
 def _begin_position(system, q, drive, ws):
-    """Without rows of slots, ways along them, and distances."""
+    """Evaluate all positions but slots, ways along them, and distances."""
     place(system, q, ws)
-    point.rows(system, ws)
-    angle.rows(system, q, drive, ws)
+    point_rows(system, ws)
+    angle_rows(system, q, drive, ws)
     if system.special.shape[0] > 0:
-        special.rows(system, q, drive, ws)
+        relative_rows(system, q, drive, ws)
 
 
 @inlined
 def _begin_gamma(system, v, drive, ws, gamma):
-    """Without rows of slots, ways along them, and distances, and without drivers."""
+    """Evaluate all of gamma but slots, ways along them, distances and drivers."""
     move(system, v, ws)
-    point.gamma_rows(system, ws, gamma)
-    angle.gamma_rows(system, gamma)
+    point_gamma(system, ws, gamma)
+    angle_gamma(system, gamma)
     if system.special.shape[0] > 0:
-        special.gamma_rows(system, v, ws, gamma)
+        relative_gamma(system, v, ws, gamma)
 
 
 @inlined
@@ -43,9 +54,9 @@ def _add_drivers(system, drive, gamma):
 def evaluate_position(system, q, drive, ws):
     """Fill ws.phi and ws.jac at q (3 nb,). ``drive`` is (motions, 3): f, f', f'' now; row 0 is zero."""
     _begin_position(system, q, drive, ws)
-    slot.rows(system, ws)
-    along.rows(system, drive, ws)
-    distance.rows(system, drive, ws)
+    slot_rows(system, ws)
+    along_rows(system, drive, ws)
+    distance_rows(system, drive, ws)
 
 
 @inlined
@@ -61,15 +72,15 @@ def evaluate_nu(system, drive, nu):
 def evaluate_gamma(system, v, drive, ws, gamma):
     """Fill gamma (m,) at velocities v (3 nb,), after evaluate_position at the same pose."""
     _begin_gamma(system, v, drive, ws, gamma)
-    slot.gamma_rows(system, v, ws, gamma)
-    along.gamma_rows(system, v, ws, gamma)
-    distance.gamma_rows(system, ws, gamma)
+    slot_gamma(system, v, ws, gamma)
+    along_gamma(system, v, ws, gamma)
+    distance_gamma(system, ws, gamma)
     _add_drivers(system, drive, gamma)
 
 
 @apart
 def position(system, q, drive, ws):
-    """evaluate_position for kernels that do not contain it."""
+    """Call evaluate_position, for kernels that do not contain it."""
     evaluate_position(system, q, drive, ws)
 
 
@@ -83,7 +94,7 @@ def _keep_rows(ws, k, phi, jacobians):
 
 @kernel
 def tabulate_all(system, drives, q, v, ws, phi, jacobians, gamma):
-    """``tabulate`` for all mechanisms."""
+    """Tabulate as ``tabulate`` for all mechanisms."""
     for k in range(q.shape[0]):
         evaluate_position(system, q[k], drives[k], ws)
         if phi.shape[0] > 0:
@@ -93,7 +104,7 @@ def tabulate_all(system, drives, q, v, ws, phi, jacobians, gamma):
 
 @kernel
 def tabulate_some(system, drives, q, v, ws, phi, jacobians, gamma):
-    """``tabulate`` where no row is of a slot, a way along it, or a distance: compiled in half the time."""
+    """Tabulate without slots, ways along them and distances: this compiles in half the time."""
     for k in range(q.shape[0]):
         _begin_position(system, q[k], drives[k], ws)
         if phi.shape[0] > 0:
@@ -106,8 +117,6 @@ def tabulate(system, drives, q, v, ws, phi, jacobians, gamma):
     """Fill phi, gamma (T, m) and compact J (T, m, 6) along q, v (T, 3 nb); none if phi is empty.
 
     Called from Python.
-
-    From Python.
     """
     more = len(system.slot) + len(system.along) + len(system.distance)
     (tabulate_all if more else tabulate_some)(system, drives, q, v, ws, phi, jacobians, gamma)

@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import internal, kernel, lazy
-from mbsd.equations.markers import move, place
+from mbsd.equations.system import move, place
 
 PIN, GUIDE = 0, 1
 """Places in FRICTION_JOINTS; the third is a pin in a slot."""
@@ -47,7 +47,7 @@ MOST_PASSES = 100
 
 @internal
 def normal_forces(loads, ws, jac, lam, out):
-    """out (f,) normal forces (N) at the multipliers lam (m,) and compact J (m, 6), after place."""
+    """Fill out (f,) with normal forces (N) at multipliers lam (m,) and compact J (m, 6), after place."""
     for k in range(loads.friction.shape[0]):
         i = loads.friction[k, MARKER_I]
         j = loads.friction[k, MARKER_J]
@@ -76,7 +76,7 @@ def normal_forces(loads, ws, jac, lam, out):
 
 @internal
 def rate_of(system, loads, v, ws, k):
-    """Rate (rad/s or m/s) at which joint k with friction turns or slides, after place and move."""
+    """Return rate (rad/s or m/s) at which joint k with friction turns or slides, after place and move."""
     i = loads.friction[k, MARKER_I]
     j = loads.friction[k, MARKER_J]
     bi = 3 * system.marker_body[i]
@@ -94,7 +94,7 @@ def rate_of(system, loads, v, ws, k):
 
 @internal
 def friction_of(loads, k, rate, normal, whole):
-    """Friction (N m of a pin, else N) on body j of joint k; see apply_friction."""
+    """Return friction (N m of a pin, else N) on body j of joint k; see apply_friction."""
     number = loads.friction_number[k]
     sense = number[SENSE]
     if sense == NONE:

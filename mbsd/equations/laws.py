@@ -103,19 +103,19 @@ def _evaluate_pieces(laws, at, x, out):
 
 @lazy(None)
 def law_at(laws, k, x, out):
-    """evaluate_law as a function of its own."""
+    """Call evaluate_law as a function of its own."""
     evaluate_law(laws, k, x, out)
 
 
 @lazy(None)
 def evaluate_laws(laws, count, x, out):
-    """Rows 0 .. count-1 of out (count, 3) at x: the drivers' laws, which come first; row 0 is zero."""
+    """Fill out (count, 3) with the first laws, those of drivers, at x; row 0 stays zero."""
     for k in range(1, count):
         evaluate_law(laws, k, x, out[k])
 
 
 @kernel
 def tabulate_law(laws, k, x, out):
-    """Law k at x (T,) into out (T, 3), for callers outside the compiled loops."""
+    """Fill out (T, 3) with law k at x (T,), for callers in Python."""
     for row in range(x.shape[0]):
         evaluate_law(laws, k, x[row], out[row])

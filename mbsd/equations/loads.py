@@ -1,7 +1,7 @@
 """The compiled evaluation of all forces.
 
-Elements and terms as mbsd/model/force.py defines them; interactions and forces of the user by the address of a
-function, so that nobody compiles what his model does not use.
+Elements and terms are those of mbsd/model/force.py. Interactions and forces of the user (model/forces/user_force.py)
+are called by the address of a function, so that nobody compiles what his model does not use.
 """
 
 from __future__ import annotations
@@ -10,11 +10,11 @@ import math
 from typing import Any, NamedTuple
 
 from mbsd.base.codes import AXIS, CONSTANT, DAMPING, DRY, LAW_RATE, LAW_TIME, LINE, LINEAR, POWER, PUSH, TURN
-from mbsd.compiling.jit import inlined, kernel
-from mbsd.equations.interactions.call import apply_interactions
+from mbsd.compiling.callback import call
+from mbsd.compiling.jit import inlined, kernel, lazy
+from mbsd.equations.interactions.evaluation import apply_interactions
 from mbsd.equations.laws import law_at
-from mbsd.equations.markers import place
-from mbsd.equations.user_forces import apply_user_forces
+from mbsd.equations.system import place
 
 
 class Loads(NamedTuple):
@@ -31,8 +31,8 @@ class Loads(NamedTuple):
     law: Any
     """(3,) scratch of a law."""
     interaction: Any
-    """(n, 9) body i, body j, law of time, first number, addresses of the function and of apply.py, crank, the first
-    body that holds a state of the force, how many do."""
+    """(n, 9) body i, body j, law of time, first number, address of the function, that of the evaluation, crank, the
+    first body that holds a state of the force, how many do."""
     given: Any
     """Numbers of each interaction: arm and axis of i, arm of j (body axes), angle of j less that of i, then its own."""
     state: Any
@@ -61,7 +61,7 @@ class Loads(NamedTuple):
 
 @inlined
 def arm_of(cos_sin, body, x, y):
-    """The arm (x, y) in the axes of a body, turned into those of ground."""
+    """Return the arm (x, y) in the axes of a body, turned into those of ground."""
     c = cos_sin[body, 0]
     s = cos_sin[body, 1]
     return c * x - s * y, s * x + c * y
@@ -92,7 +92,7 @@ def between(kind, axis, arm_i, arm_j, i, j, t, q, v):
 
 @inlined
 def effort(term, number, first, end, laws, law, t, x, rate):
-    """The sum of the terms ``first`` to ``end`` at a length or angle x and its rate (N, N m)."""
+    """Return the sum of the terms ``first`` to ``end`` at a length or angle x and its rate (N, N m)."""
     force = 0.0
     for k in range(first, end):
         what = term[k, 0]
@@ -203,3 +203,44 @@ def tabulate_loads(system, loads, laws, times, q, v, ws, out, power):
     for k in range(q.shape[0]):
         place(system, q[k], ws)
         power[k] = apply_loads(loads, laws, times[k], q[k], v[k], ws.cos_sin, out[k])
+
+
+@lazy(float)
+def apply_user_forces(user, user_body, user_com, exchange, t, q, v, cos_sin, load):
+    """Add the generalised forces of all functions to load (3 nb,); cos_sin (nb, 2) turns the bodies.
+
+    The first four are those of Loads. Returns their power (W).
+    """
+    given = exchange[0]
+    out = exchange[1]
+    power = 0.0
+    for k in range(user.shape[0]):
+        first = user[k, 1]
+        count = user[k, 2]
+        for n in range(count):
+            b = user_body[first + n]
+            c = cos_sin[b, 0]
+            s = cos_sin[b, 1]
+            x = c * user_com[first + n, 0] - s * user_com[first + n, 1]
+            y = s * user_com[first + n, 0] + c * user_com[first + n, 1]
+            rate = 3 * (count + n)
+            given[3 * n] = q[3 * b] - x
+            given[3 * n + 1] = q[3 * b + 1] - y
+            given[3 * n + 2] = q[3 * b + 2]
+            given[rate] = v[3 * b] + v[3 * b + 2] * y
+            given[rate + 1] = v[3 * b + 1] - v[3 * b + 2] * x
+            given[rate + 2] = v[3 * b + 2]
+        call(user[k, 0], t, given, out)  # pyright: ignore[reportCallIssue]
+        for n in range(count):
+            b = user_body[first + n]
+            rate = 3 * (count + n)
+            fx = out[3 * n]
+            fy = out[3 * n + 1]
+            load[3 * b] += fx
+            load[3 * b + 1] += fy
+            # the frame's origin against the centre of mass
+            x = given[3 * n] - q[3 * b]
+            y = given[3 * n + 1] - q[3 * b + 1]
+            load[3 * b + 2] += out[3 * n + 2] + x * fy - y * fx
+            power += fx * given[rate] + fy * given[rate + 1] + out[3 * n + 2] * given[rate + 2]
+    return power

@@ -1,11 +1,12 @@
-"""Compiled: products with the Jacobians of a motion, and the reactions that they make of multipliers.
+"""Compiled products with Jacobians: reactions from multipliers, residuals of the equations of motion.
 
-Numbers are added in one order: body by body, row by row.
+Numbers are added in one order: body by body, row by row. Small dense systems are solved by Gaussian elimination with
+row pivoting.
 """
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import kernel
+from mbsd.compiling.jit import internal, kernel
 
 
 @kernel
@@ -86,3 +87,66 @@ def tabulate_wrenches(joints, first_row, markers, marker_body, marker_arm, place
             out[k, number, 0] = fx
             out[k, number, 1] = fy
             out[k, number, 2] = torque - (arm_x * fy - arm_y * fx)
+
+
+@kernel
+def leave(row_body, first, inertia, weight, drives, compact, v, a, lam, velocity, acceleration, load):
+    """Fill velocity (S, m) with J v - nu, change gamma to J a - gamma, and finish load (S, 3 nb).
+
+    gamma is in ``acceleration``.
+
+    ``load`` has the forces: m g - M a - J^T lam are added. drives, a and lam are (T, ...), and S states v (S, 3 nb)
+    with compact J (S, m, 6) are T of one kind after the other. ``first`` is the row of the first driver.
+    """
+    times = a.shape[0]
+    for s in range(v.shape[0]):
+        k = s % times
+        for c in range(load.shape[1]):
+            load[s, c] += weight[c] - inertia[c] * a[k, c]
+        for r in range(row_body.shape[0]):
+            rate = 0.0
+            bend = 0.0
+            push = lam[k, r]
+            for side in range(2):
+                at = 3 * row_body[r, side]
+                for c in range(3):
+                    entry = compact[s, r, 3 * side + c]
+                    if at > 0:
+                        rate += entry * v[s, at + c]
+                        bend += entry * a[k, at + c]
+                    load[s, at + c] -= entry * push
+            velocity[s, r] = rate
+            acceleration[s, r] = bend - acceleration[s, r]
+        for d in range(1, drives.shape[1]):
+            velocity[s, first + d - 1] -= drives[k, d, 1]
+
+
+@internal
+def eliminate(matrix, side):
+    """Replace side (n, c) by the solution of matrix (n, n), which is overwritten."""
+    size = matrix.shape[0]
+    count = side.shape[1]
+    for k in range(size):
+        best = k
+        for i in range(k + 1, size):
+            if abs(matrix[i, k]) > abs(matrix[best, k]):
+                best = i
+        if best != k:
+            for c in range(k, size):
+                matrix[k, c], matrix[best, c] = matrix[best, c], matrix[k, c]
+            for c in range(count):
+                side[k, c], side[best, c] = side[best, c], side[k, c]
+        for i in range(k + 1, size):
+            part = matrix[i, k] / matrix[k, k]
+            if part != 0.0:
+                for c in range(k + 1, size):
+                    matrix[i, c] -= part * matrix[k, c]
+                for c in range(count):
+                    side[i, c] -= part * side[k, c]
+    for k in range(size - 1, -1, -1):
+        for i in range(k + 1, size):
+            part = matrix[k, i]
+            for c in range(count):
+                side[k, c] -= part * side[i, c]
+        for c in range(count):
+            side[k, c] /= matrix[k, k]

@@ -7,13 +7,26 @@ of ``special``, first four of each constraint's ``numbers`` (kinematics/pose/pha
 
 Bodies are numbered 0 .. nb-1; body 0 is ground. A row of the Jacobian touches two bodies, so six numbers hold it.
 A constraint table has one row per constraint: marker i, marker j, first row in J, motion (0: none, constant 0).
+
+Markers move with their bodies; one kernel places all of them.
+
+    arm      s = R(theta) s_local
+    position p = r + s
+    axis     u = R(theta) u_local
+    velocity p' = r' + omega s_perp,              s_perp = (-s_y, s_x) = ds/dtheta
+    convective acceleration c = -omega^2 s        (p'' = r'' + alpha s_perp + c)
+
+Source: Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems, 1989, ch. 2.4 and 3.
 """
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
+
+from mbsd.compiling.jit import inlined
 
 PLACE = 0x7FFF_FFFF
 """A place in an array, read from a table, & PLACE: then compiled indexing need not look for negative numbers."""
@@ -48,7 +61,7 @@ class System(NamedTuple):
     distance: Any
     """(k, 4) int constraint tables."""
     special: Any
-    """(k, 7) int table of the constraints of relative pose; columns in mbsd/equations/constraints/relative.py."""
+    """(k, 7) int table of the constraints of relative pose; columns in mbsd/equations/relative/equation.py."""
     address: Any
     """(k,) of their equations."""
     numbers: Any
@@ -63,11 +76,11 @@ class System(NamedTuple):
     """(k,) m, for the rows of ``distance``."""
 
     def changed(self, **arrays: np.ndarray) -> System:
-        """The same mechanism with other arrays."""
+        """Return the mechanism with other arrays."""
         return self._replace(**{name: constant(array) for name, array in arrays.items()})
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Deep copies, and what is unpickled, are constant too: kernels are compiled for such arrays."""
+        """Return deep copies, and what is unpickled, are constant too: kernels are compiled for such arrays."""
         return constant_system, tuple(self)
 
 
@@ -103,13 +116,13 @@ class Workspace(NamedTuple):
 
 
 def constant(array: np.ndarray) -> np.ndarray:
-    """The same array, which cannot be written into any more."""
+    """Return the array, which cannot be written into any more."""
     array.setflags(write=False)
     return array
 
 
 def constant_system(*arrays: np.ndarray) -> System:
-    """The System of these arrays, in the order of its fields."""
+    """Return the System of these arrays, in the order of its fields."""
     return System(*map(constant, arrays))
 
 
@@ -140,3 +153,47 @@ def workspace(system: System, rows: int) -> Workspace:
         pose=np.zeros(3 * bodies),
         delta=np.zeros((2, 3 * bodies)),
     )
+
+
+@inlined
+def place(system, q, ws):
+    """Fill arm, position and axis of the markers from q (3 nb,); those of ground never change."""
+    for b in range(1, system.mass.shape[0]):
+        theta = q[3 * b + 2]
+        ws.cos_sin[b, 0] = math.cos(theta)
+        ws.cos_sin[b, 1] = math.sin(theta)
+    for coded in system.moving:
+        k = coded & PLACE
+        b = system.marker_body[k] & PLACE
+        c = ws.cos_sin[b, 0]
+        s = ws.cos_sin[b, 1]
+        x = system.marker_arm[k, 0]
+        y = system.marker_arm[k, 1]
+        arm_x = c * x - s * y
+        arm_y = s * x + c * y
+        ws.arm[k, 0] = arm_x
+        ws.arm[k, 1] = arm_y
+        ws.position[k, 0] = q[3 * b] + arm_x
+        ws.position[k, 1] = q[3 * b + 1] + arm_y
+    for coded in system.directed:
+        k = coded & PLACE
+        b = system.marker_body[k] & PLACE
+        c = ws.cos_sin[b, 0]
+        s = ws.cos_sin[b, 1]
+        x = system.marker_axis[k, 0]
+        y = system.marker_axis[k, 1]
+        ws.axis[k, 0] = c * x - s * y
+        ws.axis[k, 1] = s * x + c * y
+
+
+@inlined
+def move(system, v, ws):
+    """Fill velocity and convective acceleration of the markers from v (3 nb,), after place."""
+    for coded in system.moving:
+        k = coded & PLACE
+        b = 3 * (system.marker_body[k] & PLACE)
+        omega = v[b + 2]
+        ws.velocity[k, 0] = v[b] - omega * ws.arm[k, 1]
+        ws.velocity[k, 1] = v[b + 1] + omega * ws.arm[k, 0]
+        ws.convective[k, 0] = -omega * omega * ws.arm[k, 0]
+        ws.convective[k, 1] = -omega * omega * ws.arm[k, 1]

@@ -11,9 +11,8 @@ from mbsd.arrays.packing import Packed
 from mbsd.base.arguments import number_array, whole_number
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such, shown
-from mbsd.kinematics.design_sweeps import Batch, DesignSweeps, Moved, in_closed_form
-from mbsd.kinematics.doubted_designs import FINER, settle
-from mbsd.kinematics.prepare import prepare
+from mbsd.kinematics.design_sweeps import FINER, Batch, DesignSweeps, Moved, in_closed_form, settle
+from mbsd.kinematics.prepared import prepare
 from mbsd.model.body import at_end
 from mbsd.model.mechanism import Model, names_given
 from mbsd.numbers.names import place_in, placed_side

@@ -2,11 +2,16 @@
 
 The numbers of the groups (mbsd/kinematics/groups) are linear in the places of the markers, so those of all designs are
 one matrix product. Designs share the branch of the mechanism itself.
+
+A batch looks at no pose between its steps, so it cannot tell a change point from a near miss. Designs whose branches
+come near each other are doubted: swept in finer steps, then one by one by the march of a single sweep (march.py). That
+passes change points on the smooth continuation, and raises an error for a design that does not close.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -14,22 +19,22 @@ from typing import NamedTuple
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.base.errors import ModelError
+from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.running import cores
-from mbsd.equations.system import System
-from mbsd.kinematics.groups.blocks import BLOCK
-from mbsd.kinematics.groups.carrying.columns import COS
-from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
+from mbsd.equations.system import System, workspace
+from mbsd.kinematics.groups.blocks import BLOCK, no_blocks
+from mbsd.kinematics.groups.carried import COS, DOUBTED, SOLVED
 from mbsd.kinematics.groups.designs import Placed, Scratch, Wanted, place_designs
 from mbsd.kinematics.groups.groups import DRIVEN, Groups
 from mbsd.kinematics.groups.kinds.driven import OFFSET, SENSE
 from mbsd.kinematics.groups.plan import plan_groups
-from mbsd.kinematics.groups.registry import BRANCH
-from mbsd.kinematics.groups.tables import rows_of
+from mbsd.kinematics.groups.tables import BRANCH, rows_of
+from mbsd.kinematics.march import march_along
+from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.prepared import Prepared
 from mbsd.kinematics.steps import divisions
 from mbsd.model.mechanism import Model
-from mbsd.model.output_times import refuse_beyond_memory
+from mbsd.model.output_times import check_memory
 
 CHUNK = 64
 """Designs that a thread takes at once."""
@@ -70,7 +75,7 @@ class Batch:
     closes: np.ndarray
     """(n,) whether the links close all the way."""
     doubted: np.ndarray
-    """(n,) whether a design was given up where its branches come near each other (doubted_designs.py)."""
+    """(n,) whether a design was given up where its branches come near each other (:func:`settle`)."""
 
 
 def in_closed_form(ready: Prepared) -> bool:
@@ -117,7 +122,7 @@ class DesignSweeps:
         """Sweep designs whose numbers differ from the mechanism's own by ``values`` (n, moved) (m)."""
         m, grid, traces = self.m, self.grid, len(self.bodies)
         count, turned = len(values), len(self.turned)
-        refuse_beyond_memory(
+        check_memory(
             f"{m.name}: {count} designs at {len(grid)} times",
             count * (len(grid) * (2 * traces + turned) + self.groups.number.size),
             "Take fewer designs or steps at once",
@@ -178,7 +183,7 @@ class DesignSweeps:
         return Batch(self.grid, points, angles, closes, (status == DOUBTED).any(axis=0))
 
     def arms_of(self, values: np.ndarray) -> np.ndarray:
-        """(n, points, 2) of the traced points, from centres of mass."""
+        """Return (n, points, 2) of the traced points, from centres of mass."""
         arms = np.tile(self.arms, (len(values), 1, 1))
         for column, change in enumerate(self.moved):
             if change.trace is not None:
@@ -186,7 +191,7 @@ class DesignSweeps:
         return arms
 
     def system_of(self, values: np.ndarray) -> System:
-        """The arrays of one design whose numbers differ from the mechanism's own by ``values`` (moved,) (m)."""
+        """Return the arrays of a design whose numbers differ from the mechanism's by ``values`` (moved,) (m)."""
         system = self.packed.system
         arms, lengths = system.marker_arm.copy(), system.distance_length.copy()
         for value, change in zip(values.tolist(), self.moved, strict=True):
@@ -210,7 +215,7 @@ class DesignSweeps:
         )  # fmt: skip
 
     def _numbers(self, values: np.ndarray) -> np.ndarray:
-        """(n, g, 14) numbers of the groups of all designs; exact, for they are linear in places and lengths."""
+        """Return (n, g, 14) numbers of all designs' groups, exact since linear in places and lengths."""
         out = np.tile(self.groups.number, (len(values), 1, 1))
         for column, slope in enumerate(self.slopes):
             if slope is not None:
@@ -243,7 +248,7 @@ def slopes(packed: Packed, q0: np.ndarray, groups: Groups, moved: Sequence[Moved
 
 
 def _driven(groups: Groups, drives: np.ndarray) -> np.ndarray:
-    """(T, g, 2) which no design changes: cosine and sine of driven angles, other laws."""
+    """Return (T, g, 2) which no design changes: cosine and sine of driven angles, other laws."""
     driven = np.zeros((len(drives), len(groups.kind), 2))
     for e, kind in enumerate(groups.kind):
         if kind == DRIVEN:
@@ -257,3 +262,72 @@ def _driven(groups: Groups, drives: np.ndarray) -> np.ndarray:
 def _body(m: Model, packed: Packed, name: str) -> int:
     m.known_body(name)
     return packed.body_names.index(name)
+
+
+FINER = 8
+"""Times more steps with which designs are swept again."""
+
+
+def settle(
+    sweeps: DesignSweeps, finer: Callable[[], DesignSweeps], batch: Batch, values: np.ndarray, threads: int | None
+) -> None:
+    """Give designs of a ``batch`` that are doubted the results of sweeps that look closer.
+
+    ``values`` (n, moved): their numbers against the mechanism's own (m). ``finer``: sweeps of the same with ``FINER``
+    times more steps. A design whose sweep is refused does not close; one that starts on another branch stays doubted.
+    """
+    if not batch.doubted.any():
+        return
+    rows = batch.doubted.copy()
+    _copy_rows(batch, rows, finer()(values[rows], threads))
+    for row in np.flatnonzero(batch.doubted).tolist():
+        try:
+            q = _swept(sweeps, values[row])
+        except MechanismError:
+            batch.doubted[row] = False
+            continue
+        if q is not None:
+            _fill_row(sweeps, batch, row, values[row], q)
+
+
+def _copy_rows(batch: Batch, rows: np.ndarray, others: Batch) -> None:
+    """Give some rows the results of ``others``."""
+    for name, points in batch.points.items():
+        points[rows] = others.points[name]
+    for name, angles in batch.angles.items():
+        angles[rows] = others.angles[name]
+    batch.closes[rows], batch.doubted[rows] = others.closes, others.doubted
+
+
+def _fill_row(sweeps: DesignSweeps, batch: Batch, row: int, values: np.ndarray, q: np.ndarray) -> None:
+    """Give a row the traced points and angles of poses q (T, 3 nb)."""
+    arms = sweeps.arms_of(values[None])[0]
+    for points, body, (x, y) in zip(batch.points.values(), sweeps.bodies.tolist(), arms, strict=True):
+        c, s = np.cos(q[:, 3 * body + 2]), np.sin(q[:, 3 * body + 2])
+        points[row, :, 0] = q[:, 3 * body] + c * x - s * y
+        points[row, :, 1] = q[:, 3 * body + 1] + s * x + c * y
+    for angles, body in zip(batch.angles.values(), sweeps.turned.tolist(), strict=True):
+        theta = q[:, 3 * body + 2]
+        turns = round((sweeps.q0[3 * body + 2] - theta[0]) / math.tau)
+        angles[row] = theta + math.tau * turns
+    batch.closes[row], batch.doubted[row] = True, False
+
+
+def _swept(sweeps: DesignSweeps, values: np.ndarray) -> np.ndarray | None:
+    """Return the poses (T, 3 nb) of one design; None if it starts on another branch.
+
+    Raises MechanismError.
+    """
+    ready, grid = sweeps.ready, sweeps.grid
+    system = sweeps.system_of(values)
+    scratch = workspace(system, len(ready.packed.ws.phi))
+    packed = replace(ready.packed, system=system, ws=scratch, constant=None)
+    q0 = assemble(sweeps.m, packed, float(grid[0]))
+    groups = plan_groups(packed, q0, 0)
+    if groups is None or (groups.kind != sweeps.groups.kind).any():
+        return None
+    for own, base, kind in zip(groups.number, sweeps.groups.number, groups.kind.tolist(), strict=True):
+        if kind in BRANCH and own[BRANCH[kind]] * base[BRANCH[kind]] < 0.0:
+            return None
+    own = Prepared(packed, q0, ready.start_time, ready.sequence, ready.factors, ready.mobility, groups, no_blocks())
+    return march_along(own, grid).q

@@ -1,24 +1,29 @@
-"""March along a driven motion, pose by pose, closed forms first; failed steps are halved."""
+"""March along a driven motion, pose by pose, closed forms first; failed steps are divided.
+
+Motions that cannot go on end in errors that name the time and the drivers: a toggle, a jump to the other assembly, a
+redundant joint that opens.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
-from mbsd.base.errors import MechanismError
+from mbsd.arrays.packing import Packed
+from mbsd.base.errors import AssemblyError, BranchError, MechanismError, SingularPoseError
+from mbsd.base.quantity import written
 from mbsd.equations.assembly import residual_and_jacobian, tabulate
-from mbsd.kinematics import impossible_motions, newton
+from mbsd.kinematics import newton
 from mbsd.kinematics.change_points.assemblies import Solver
 from mbsd.kinematics.change_points.passages import NEAR_END, Passage, Passages
 from mbsd.kinematics.elimination import Elimination, plan
-from mbsd.kinematics.groups.carrying.columns import COS
-from mbsd.kinematics.groups.carrying.rates import DOUBTED, OPEN, SOLVED
+from mbsd.kinematics.groups.carried import COS, DOUBTED, OPEN, SOLVED
 from mbsd.kinematics.groups.groups import Groups
 from mbsd.kinematics.groups.solve import SOLVED_CLOSE, Poses, solve_groups
 from mbsd.kinematics.pose.mobility import best_rows
-from mbsd.kinematics.prepared import Prepared
-from mbsd.kinematics.sample_jacobians import sample_jacobians
+from mbsd.kinematics.prepared import Prepared, sample_jacobians
 from mbsd.kinematics.steps import Steps
 
 ZERO_LENGTH = 1e-12
@@ -50,13 +55,13 @@ class March:
 
     def closely(self) -> tuple[np.ndarray, np.ndarray]:
         """Return times (N,) and poses (N, 3 nb) of all steps and seven times within each, by quintics."""
-        from mbsd.model.cams.profile import hermite
+        from mbsd.model.laws.numbers import hermite_coefficients
 
         times, (q, v, a) = self.steps.times, self._all
         if len(times) < 2:
             return times, q
         h, samples = np.diff(times), np.stack([q, v, a], axis=-1)
-        coefficients = hermite(h, samples[:-1], samples[1:])
+        coefficients = hermite_coefficients(h, samples[:-1], samples[1:])
         ahead = h[:, None] * np.arange(8) / 8
         poses = np.einsum("sxp,scp->sxc", ahead[..., None] ** np.arange(6), coefficients).reshape(-1, q.shape[1])
         inner = (times[:-1, None] + ahead).ravel()
@@ -74,7 +79,7 @@ def kinematics_at(ready: Prepared, times: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def march_along(ready: Prepared, times: np.ndarray, switch_at: Sequence[float] | np.ndarray = ()) -> March:
-    """The motion at rising times (T,) (s): closed forms where they serve, else Newton-Raphson.
+    """Return the motion at rising times (T,) (s): closed forms where they serve, else Newton-Raphson.
 
     It passes change points on the smooth continuation, and goes on to the other assembly at those of ``switch_at`` (s).
     """
@@ -89,12 +94,12 @@ def march_along(ready: Prepared, times: np.ndarray, switch_at: Sequence[float] |
     steps = Steps(ready.packed, times)  # those of the closed form may be just where branches meet
     q, v, a, passages = _newton(ready, steps, switches)
     if out_of_reach is not None:
-        raise impossible_motions.out_of_reach(ready.packed, out_of_reach)
+        raise error_out_of_reach(ready.packed, out_of_reach)
     return March(q, v, a, steps, False, passages)
 
 
 def _near_ends(ready: Prepared, times: np.ndarray) -> March | None:
-    """The motion by Newton-Raphson where it begins or ends near a change point; None where it does not."""
+    """Return the motion by Newton-Raphson if it begins or ends near a change point, else None."""
     steps = Steps(ready.packed, times)
     try:
         q, v, a, passages = _newton(ready, steps, np.zeros(0))
@@ -161,13 +166,13 @@ def _all_close(ready: Prepared, steps: Steps, q: np.ndarray) -> bool:
     count, rows = len(q), len(packed.ws.phi)
     phi, gamma = np.zeros((2, count, rows))
     tabulate(packed.system, steps.drives, q, np.zeros_like(q), packed.ws, phi, np.zeros((count, rows, 6)), gamma)
-    return float(np.abs(phi).max()) <= impossible_motions.REDUNDANT_GAP * max(packed.size, 1.0)
+    return float(np.abs(phi).max()) <= REDUNDANT_GAP * max(packed.size, 1.0)
 
 
 def _newton(
     ready: Prepared, steps: Steps, switch_at: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[Passage]]:
-    """Positions, velocities, accelerations (T, 3 nb) at all steps, and passages past change points.
+    """Return positions, velocities, accelerations (T, 3 nb) at all steps, and passages past change points.
 
     Steps that the kernel refuses are divided.
     """
@@ -185,7 +190,7 @@ def _newton(
         if status == newton.DONE:
             break
         if index == 0:
-            raise impossible_motions.refused(packed, status, steps.times, 0, steps.drives, q, v)
+            raise error_of_step(packed, status, steps.times, 0, steps.drives, q, v)
         if not passages.passages and steps.follow_laws():
             arrays, first, chosen = _arrays(ready.q0, len(steps.times), sequence), 0, 0
             continue
@@ -204,13 +209,13 @@ def _newton(
             chosen = first
             continue
         if not steps.divide(index):
-            raise impossible_motions.refused(packed, status, steps.times, index, steps.drives, q, v)
+            raise error_of_step(packed, status, steps.times, index, steps.drives, q, v)
         arrays = tuple(np.insert(array, index, 0.0, axis=0) for array in arrays)
         first = index
     q, v, a, residual, determinant = arrays
     if len(steps.times):
         passages.pass_ends(q, v, determinant)
-        impossible_motions.refuse_disagreeing(packed, steps.times, residual, q, steps.drives)
+        refuse_disagreeing(packed, steps.times, residual, q, steps.drives)
     passages.refuse_missed_switches()
     return *passages.fill(q, v, a), passages.passages
 
@@ -232,3 +237,77 @@ def _arrays(q0: np.ndarray, count: int, sequence: Elimination) -> tuple[np.ndarr
     q, v, a = (np.zeros((count, n3)) for _ in range(3))
     q[0] = q0
     return q, v, a, np.zeros(count), np.zeros((count, blocks))
+
+
+RUNAWAY = 30.0
+"""Turning this many times faster than usual is the mark of a toggle; at a change point rates stay as they are."""
+REDUNDANT_GAP = 1e-7
+"""Largest gap, in sizes, by which redundant joints may disagree."""
+
+
+def error_out_of_reach(packed: Packed, time: float) -> Exception:
+    """Return the error for a motion on whose way a group cannot close, whatever Newton-Raphson made of it."""
+    return SingularPoseError(
+        f"{packed.name}: the links cannot follow the drivers beyond t = {time:.9g} s "
+        f"({driver_values(packed, packed.drives(np.array([time]))[0])}): a toggle, beyond which they do not "
+        "reach each other. Drive within the reachable range, change the lengths, or drive another body."
+    )
+
+
+def refuse_disagreeing(
+    packed: Packed, grid: np.ndarray, residual: np.ndarray, q: np.ndarray, drives: np.ndarray
+) -> None:
+    """Raise AssemblyError where rows that were left out as redundant do not hold."""
+    k = int(np.argmax(residual))
+    if residual[k] <= REDUNDANT_GAP * max(packed.size, 1.0):
+        return
+    residual_and_jacobian(packed.system, q[k], drives[k], packed.ws)
+    joint = packed.joint_of_row(int(np.argmax(np.abs(packed.ws.phi))))
+    raise AssemblyError(
+        f"{packed.name}: at t = {grid[k]:.6g} s redundant joint {joint.name} is open by "
+        f"{residual[k]:.3g} (m or rad) while all others close: the lengths do not agree. "
+        "Correct them, or leave the joint out."
+    )
+
+
+def error_of_step(
+    packed: Packed, status: int, grid: np.ndarray, index: int, drives: np.ndarray, q: np.ndarray, v: np.ndarray
+) -> Exception:
+    """Return the error for a step that halving does not cure."""
+    last = max(index - 1, 0)
+    rates = np.abs(v[last].reshape(-1, 3)[1:, 2])
+    where = f"t = {grid[last]:.6g} s ({driver_values(packed, drives[last])})"
+    if index == 0:
+        return SingularPoseError(
+            f"{packed.name}: the start pose at {where} is singular (a toggle or change point): "
+            "the drivers do not fix the motion here. Start a little before or after it, or drive another body."
+        )
+    bodies = packed.body_names[1:]
+    fastest = ", ".join(bodies[b] for b in np.argsort(-rates)[:2])
+    usual = float(np.median(np.abs(v[: last + 1].reshape(last + 1, -1, 3)[:, 1:, 2]).max(axis=1)))
+    if rates.max() > RUNAWAY * usual:
+        return SingularPoseError(
+            f"{packed.name}: the links cannot follow the drivers beyond {where}: a toggle, where {fastest} "
+            f"run away ({written(rates.max(), 'rad/s')}, {written(usual, 'rad/s')} before). Drive within the "
+            "reachable range, change the lengths, or drive another body."
+        )
+    if status == newton.BRANCH_DOUBT:
+        return BranchError(
+            f"{packed.name}: after {where} the motion would jump to the other assembly, and steps down to "
+            f"{grid[index] - grid[last]:.1e} s do not cure it. A law jumps there, or the drivers rest where two "
+            "assemblies meet; end the motion before it."
+        )
+    return SingularPoseError(
+        f"{packed.name}: the pose at {where} is singular, and no smooth motion through it was found: the drivers do "
+        "not decide how the links go on. End the motion before it, or add a link that decides."
+    )
+
+
+def driver_values(packed: Packed, drive: np.ndarray) -> str:
+    """Return the values of the drivers in words."""
+    parts = []
+    for k, driver in enumerate(packed.drivers):
+        value = float(drive[k + 1, 0])
+        at = f"{math.degrees(value):.4g} degrees" if driver.kind.angular else f"{value:.4g} m"
+        parts.append(f"{driver.name} at {at}")
+    return ", ".join(parts)

@@ -17,18 +17,16 @@ from functools import partial
 
 import numpy as np
 
-from mbsd.arrays.approaches import approached_along
 from mbsd.arrays.friction_along import with_friction
 from mbsd.arrays.inertias import inertia_of, weight_of
 from mbsd.arrays.laws import compiled_laws
-from mbsd.arrays.loads import pack_loads
-from mbsd.arrays.loads_along import loads_along
+from mbsd.arrays.loads import approached_along, loads_along, pack_loads
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import times_compact, wrenches
 from mbsd.base.errors import SingularPoseError
 from mbsd.equations.assembly import tabulate
+from mbsd.kinematics.elimination import ALL_SOLVED, multipliers_along
 from mbsd.kinematics.prepared import Prepared
-from mbsd.kinematics.transposed import ALL_SOLVED, multipliers_along
 
 JACOBIAN_NUMBERS = 4_000_000
 """How many numbers of Jacobians are held at once."""
@@ -103,7 +101,7 @@ def inverse_dynamics(
 
 
 def singularity_margin(packed: Packed, rows: np.ndarray, drives: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """(T,) smallest over largest singular value of the scaled rows (n,) of J along a motion q (T, 3 nb)."""
+    """Return (T,) smallest over largest singular value of scaled rows (n,) of J along q (T, 3 nb)."""
     kept, margin = rows.astype(np.int64), np.zeros(len(q))
     scale = packed.row_scale()[kept, None] * packed.column_scale()
     for at in _chunks(packed, len(q)):
@@ -114,7 +112,7 @@ def singularity_margin(packed: Packed, rows: np.ndarray, drives: np.ndarray, q: 
 
 
 def _chunks(packed: Packed, count: int) -> Iterator[slice]:
-    """Chunks of the outputs, so that not too many Jacobians are held at once."""
+    """Return chunks of the outputs, so that not too many Jacobians are held at once."""
     size = max(1, JACOBIAN_NUMBERS // max(1, len(packed.ws.phi) * packed.coordinates))
     return (slice(start, min(start + size, count)) for start in range(0, count, size))
 
@@ -122,7 +120,7 @@ def _chunks(packed: Packed, count: int) -> Iterator[slice]:
 def _tabulated(
     packed: Packed, drives: np.ndarray, q: np.ndarray, v: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Phi (T, m), compact J (T, m, 6) and gamma (T, m) along a motion."""
+    """Return Phi (T, m), compact J (T, m, 6) and gamma (T, m) along a motion."""
     count, rows = len(q), len(packed.ws.phi)
     phi, gamma = np.zeros((2, count, rows))
     compact = np.zeros((count, rows, 6))
@@ -155,7 +153,7 @@ def _take_nearer_side(
 def _multipliers(
     ready: Prepared, times: np.ndarray, compact: np.ndarray, jac: np.ndarray, loads: np.ndarray
 ) -> np.ndarray:
-    """(T, m) of J, compact (T, m, 6) and spread (T, m, n), and loads (T, 3 nb)."""
+    """Return (T, m) of J, compact (T, m, 6) and spread (T, m, n), and loads (T, 3 nb)."""
     if ready.mobility.redundant_rows:
         return np.array(
             [np.linalg.lstsq(matrix.T, load[3:], rcond=1e-9)[0] for matrix, load in zip(jac, loads, strict=True)]

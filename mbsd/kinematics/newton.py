@@ -15,6 +15,9 @@ Branch guard: a step is refused, and the caller puts a pose into it, when
 - the determinant of an irreducible block of J changes sign, shrinks fast, or would on a straight line through its last
   two values: near such a pose two assemblies come close, and steps shorter than the way to it tell them apart.
 
+Loops of Newton-Raphson elsewhere solve other systems: blocks of few unknowns (groups/newton/block.py, which share the
+test and the guard), and starts far from closed, by damped steps of least norm (pose/close.py).
+
 Where the two assemblies meet, steps do not tell them apart however short they are: mbsd/kinematics/change_points/
 passes these poses.
 
@@ -30,8 +33,6 @@ import numpy as np
 from mbsd.compiling.jit import inlined, kernel
 from mbsd.equations.assembly import evaluate_gamma, evaluate_nu, evaluate_position
 from mbsd.kinematics.elimination import factorise, solve
-from mbsd.kinematics.law_step import jumps
-from mbsd.kinematics.predictor import quintic_factors, quintic_value
 
 TOLERANCE = 1e-12
 """Tolerance of a Newton correction, relative to the mechanism's size (m) and to 1 rad."""
@@ -67,7 +68,7 @@ class DrivenMotion(NamedTuple):
 
 @inlined
 def _predict(q, v, a, t, k, time, out):
-    """Pose at ``time`` from results 0 .. k-1: the quintic through the last two, or the last alone."""
+    """Predict the pose at ``time``: the quintic through results k-2 and k-1, or the last alone."""
     factors = quintic_factors(t, k, time)
     for c in range(3, q.shape[1]):
         out[c] = quintic_value(factors, k, q, v, a, c)
@@ -75,13 +76,25 @@ def _predict(q, v, a, t, k, time, out):
 
 @kernel
 def _extent(delta, per_metre):
-    """Largest part of a change of pose (3 nb,): lengths in sizes, angles in rad; NaN counts as infinite."""
+    """Return the largest part of a change of pose (3 nb,) in sizes and rad; NaN counts as infinite."""
     largest = 0.0
     for b in range(3, delta.shape[0], 3):
         part = max(abs(delta[b]) * per_metre, abs(delta[b + 1]) * per_metre, abs(delta[b + 2]))
         if not part <= largest:
             largest = part if part == part else np.inf
     return largest
+
+
+@inlined
+def has_settled(iteration, change, last):
+    """Return True if a correction is small enough, or more than half the last: rounding is met."""
+    return change <= TOLERANCE or (iteration > 0 and not change < 0.5 * last)
+
+
+@inlined
+def is_suspicious(first, second, step):
+    """Return True if the first two corrections of a step are too large for the predicted branch."""
+    return first > SUSPICIOUS * step + 1e-9 or second > CONTRACTS * first + 1e-9
 
 
 @inlined
@@ -175,9 +188,7 @@ def sweep(system, seq, fac, ws, size, motion, residual, determinant, start, chos
                 first = change
             elif iteration == 1:
                 second = change
-            if change <= TOLERANCE:
-                break
-            if iteration > 0 and not change < 0.5 * last:
+            if has_settled(iteration, change, last):
                 break
             last = change
         if not change <= ROUNDING:
@@ -196,7 +207,7 @@ def sweep(system, seq, fac, ws, size, motion, residual, determinant, start, chos
             for c in range(3, n3):
                 delta[0, c] = pose[c] - q[k - 1, c]
             step = _extent(delta[0], per_metre)
-            if first > SUSPICIOUS * step + 1e-9 or second > CONTRACTS * first + 1e-9:
+            if is_suspicious(first, second, step):
                 return BRANCH_DOUBT, k
             refused = heads_for_zero(determinant, times, k, chosen) if k > chosen else 0
             if refused > 0:
@@ -208,3 +219,66 @@ def sweep(system, seq, fac, ws, size, motion, residual, determinant, start, chos
         if k > 0 and _unexplained(q, v, a, k, h, per_metre) > UNEXPLAINED:
             return BRANCH_DOUBT, k
     return DONE, times.shape[0]
+
+
+LONGEST_STRETCH = 4.0
+"""Beyond this ratio of step lengths the quintic is not trusted; the last (q, v, a) alone predicts."""
+
+
+@inlined
+def quintic_factors(t, k, time):
+    """Return weights at ``time`` of the data of poses k - 1, k - 2: the difference of q, v and a of each.
+
+    With s = ahead / h the quintic is linear in the six data, so its five factors are found once for all coordinates.
+    """
+    ahead = time - t[k - 1]
+    h = t[k - 1] - t[k - 2] if k > 1 else 0.0
+    from_q = 0.0
+    from_v = ahead
+    from_a = 0.5 * ahead * ahead
+    earlier_v = 0.0
+    earlier_a = 0.0
+    if ahead < LONGEST_STRETCH * h:
+        s = ahead / h
+        cube = s * s * s
+        from_q = -cube * (10.0 + s * (15.0 + 6.0 * s))
+        p1 = -cube * (4.0 + s * (7.0 + 3.0 * s))
+        p2 = -cube * (0.5 + s * (1.0 + 0.5 * s))
+        from_v = h * (s + from_q - p1)
+        from_a = h * h * (0.5 * s * s - 0.5 * from_q + p1 - p2)
+        earlier_v = h * p1
+        earlier_a = h * h * p2
+    return from_q, from_v, from_a, earlier_v, earlier_a
+
+
+@inlined
+def quintic_value(factors, k, q, v, a, c):
+    """Return coordinate c by these factors from poses k - 1 and k - 2 in q, v, a (T, 3 nb)."""
+    from_q, from_v, from_a, earlier_v, earlier_a = factors
+    last = k - 1
+    before = max(k - 2, 0)
+    return (
+        q[last, c]
+        + from_q * (q[before, c] - q[last, c])
+        + from_v * v[last, c]
+        + earlier_v * v[before, c]
+        + from_a * a[last, c]
+        + earlier_a * a[before, c]
+    )
+
+
+JUMP = 0.25
+"""Part of a law's step that its rates may leave unexplained."""
+
+
+@inlined
+def jumps(law, before, h, stride):
+    """Return True if a law's value (3,) is over ``stride`` from that h before, or off its rates' lead.
+
+    h is in s.
+    """
+    step = law[0] - before[0]
+    gap = step - h * (0.5 * (law[1] + before[1]) - h / 12.0 * (law[2] - before[2]))
+    if not (abs(step) <= stride and h * abs(law[1]) <= stride and h * abs(before[1]) <= stride):
+        return True
+    return not abs(gap) <= JUMP * abs(step) + 1e-9

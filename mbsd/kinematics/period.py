@@ -49,7 +49,7 @@ class Repetition:
 
 def period(m: Model) -> float | None:
     """See :meth:`mbsd.mechanism.Mechanism.period`."""
-    from mbsd.kinematics.prepare import prepare
+    from mbsd.kinematics.prepared import prepare
 
     common = common_period(m.drivers.values())
     if common is None:
@@ -90,7 +90,7 @@ def common_period(drivers: Iterable[Joint]) -> float | None:
 
 
 def repetition(m: Model, common: float, ready: Prepared) -> Repetition:
-    """When ``m`` repeats, whose laws do so after ``common`` (s); ``ready`` for 0 .. common."""
+    """Return when ``m`` repeats, whose laws do so after ``common`` (s); ``ready`` for 0 .. common."""
     from mbsd.kinematics.march import march_along
 
     march = march_along(ready, np.array([0.0, common]))
@@ -107,7 +107,7 @@ def repetition(m: Model, common: float, ready: Prepared) -> Repetition:
 
 
 def rational(value: float) -> Fraction | None:
-    """``value`` as p / q with q up to MOST_TURNS; None where it is none."""
+    """Return ``value`` as p / q with q up to MOST_TURNS; None where it is none."""
     fraction = Fraction(value).limit_denominator(MOST_TURNS)
     return fraction if abs(value - float(fraction)) <= RATIONAL * max(1.0, abs(value)) else None
 
@@ -145,8 +145,8 @@ def _least_turns(ends: Ends) -> int | None:
 
 
 def _search(m: Model, common: float, least: int, turns: int) -> int | None:
-    """The first multiple of ``least`` up to ``turns`` after which everything is back."""
-    from mbsd.kinematics.prepare import prepare
+    """Return the first multiple of ``least`` up to ``turns`` after which everything is back."""
+    from mbsd.kinematics.prepared import prepare
 
     try:
         with warnings.catch_warnings():

@@ -11,15 +11,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from mbsd.arrays.law_jumps import jump_times
-from mbsd.arrays.laws import compiled_laws, law_values
+from mbsd.arrays.laws import compiled_laws, jump_times, law_values
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.states import columns_of, ones_of, with_states
 from mbsd.base.errors import SimulationError
 from mbsd.equations.laws import Laws
 from mbsd.equations.loads import tabulate_loads
-from mbsd.model.cams.profile import hermite
+from mbsd.model.laws.numbers import hermite_coefficients
 from mbsd.results.measured import measured, measured_rate
 
 TOLERANCE = 1e-9
@@ -46,7 +45,7 @@ def states_along(packed: Packed, t: np.ndarray, q: np.ndarray, v: np.ndarray, a:
 
 
 def _start(packed: Packed, laws: Laws, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """(n,) SI."""
+    """Return (n,) SI."""
     out: list[float] = []
     for force, (i, j) in zip(packed.forces, packed.force_markers, strict=True):
         if force.kind.states is not None:
@@ -60,7 +59,7 @@ def _start(packed: Packed, laws: Laws, t: np.ndarray, q: np.ndarray, v: np.ndarr
 
 
 def _stretches(packed: Packed, laws: Laws, t: np.ndarray) -> list[tuple[float, float]]:
-    """From jump to jump of the laws (s)."""
+    """Return from jump to jump of the laws (s)."""
     start, end = float(t[0]), float(t[-1])
     if not end > start:
         return []
@@ -75,7 +74,7 @@ class _Flow:
         self.wide, self.t = wide, t
         self.loads, self.laws = pack_loads(wide), laws
         samples = np.stack([q, v, a], axis=-1)
-        self.quintics = hermite(np.diff(t), samples[:-1], samples[1:])
+        self.quintics = hermite_coefficients(np.diff(t), samples[:-1], samples[1:])
         self.columns, self.width = columns_of(wide), q.shape[1]
         self.q, self.v, self.load = (np.zeros((1, len(wide.body_names) * 3)) for _ in range(3))
         self.time, self.power = np.zeros(1), np.zeros(1)

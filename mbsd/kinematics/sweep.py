@@ -11,21 +11,18 @@ import numpy as np
 from mbsd.arrays.chambers import check_pistons, phase_changes, whole_cycles
 from mbsd.arrays.curve_branches import CurveBranches
 from mbsd.arrays.efforts_beside import fill_beside
-from mbsd.arrays.law_jumps import jump_times, reach_beside
-from mbsd.arrays.laws import compiled_laws
+from mbsd.arrays.laws import compiled_laws, jump_times, reach_beside
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError, ModelWarning
 from mbsd.base.names import shown
 from mbsd.base.warning import warn
-from mbsd.kinematics.change_points.sides import determinant_of, sides_of
-from mbsd.kinematics.limits.closed_contacts import refuse_passed_contacts
-from mbsd.kinematics.limits.curve_jumps import refuse_jumps
-from mbsd.kinematics.limits.joints import limits_of, refuse_passed
+from mbsd.kinematics.change_points.passages import determinant_of, sides_of
+from mbsd.kinematics.limits.contacts import refuse_passed_contacts
+from mbsd.kinematics.limits.joints import limits_of, refuse_jumps, refuse_passed
 from mbsd.kinematics.march import March, march_along
 from mbsd.kinematics.multipliers import Efforts, inverse_dynamics, singularity_margin
 from mbsd.kinematics.period import MOST_TURNS, common_period, repetition
-from mbsd.kinematics.prepare import prepare, prepare_beside
-from mbsd.kinematics.prepared import Prepared
+from mbsd.kinematics.prepared import Prepared, prepare, prepare_beside
 from mbsd.kinematics.states_along import states_along
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import equal_times, rising_times
@@ -128,7 +125,7 @@ def _named(
     loads: Efforts,
     states: np.ndarray | None,
 ) -> Solution:
-    """The results by name of a ``motion``: times (T,), drives, q, v and a (T, 3 nb)."""
+    """Return the results by name of a ``motion``: times (T,), drives, q, v and a (T, 3 nb)."""
     grid, drives, q, v, a = motion
     shape = (len(grid), -1, 3)
     return Solution(
@@ -151,7 +148,7 @@ def _named(
 
 
 def _states(ready: Prepared, times: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray | None:
-    """(T, n) states of forces (SI) along the motion, None where no force has any. Raises SimulationError."""
+    """Return (T, n) states of forces (SI) along the motion, None without any. Raises SimulationError."""
     states = states_along(ready.packed, times, q, v, a)
     if states is not None:
         check_states(ready.packed, times, q, states)
@@ -159,14 +156,14 @@ def _states(ready: Prepared, times: np.ndarray, q: np.ndarray, v: np.ndarray, a:
 
 
 def _spread(values: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """(T, ...) with ``values`` at ``rows`` (T,), NaN elsewhere."""
+    """Return (T, ...) with ``values`` at ``rows`` (T,), NaN elsewhere."""
     out = np.full((len(rows), *values.shape[1:]), np.nan)
     out[rows] = values
     return out
 
 
 def switch_times(m: Model, times: Sequence[float] | np.ndarray) -> np.ndarray:
-    """(n,) times (s) at which a motion is to switch. Raises ModelError for what are no finite numbers."""
+    """Return (n,) times (s) at which a motion is to switch. Raises ModelError unless they are finite."""
     if isinstance(times, tuple) and not times:
         return np.zeros(0)
     switches = number_array(f"{m.name}: switch_at", times)
@@ -180,7 +177,7 @@ def _ready(m: Model, beside: Prepared | None, start: float, end: float) -> Prepa
 
 
 def _beside_jumps(ready: Prepared, grid: np.ndarray, march: March) -> Asked | None:
-    """The times (s) of ``grid`` and those beside what jumps; None where nothing does."""
+    """Return the times (s) of ``grid`` and those beside what jumps; None where nothing does."""
     packed, start, end = ready.packed, float(grid[0]), float(grid[-1])
     if not end > start:
         return None
@@ -198,7 +195,7 @@ def _beside_jumps(ready: Prepared, grid: np.ndarray, march: March) -> Asked | No
 
 
 def sweep_times(m: Model, duration: float | None, steps: int, times: Sequence[float] | np.ndarray | None) -> np.ndarray:
-    """(T,) rising times (s) of a sweep. Raises ModelError."""
+    """Return (T,) rising times (s) of a sweep. Raises ModelError."""
     if times is not None:
         return rising_times(m, times, 1)
     if duration is None:
@@ -220,7 +217,7 @@ def _law_duration(m: Model) -> float:
 
 
 def _whole_period(m: Model, ready: Prepared, march: March, duration: float) -> float | None:
-    """The mechanism's period (s) where it is longer than the one just swept; None where that one serves.
+    """Return the mechanism's period (s) if it is longer than the motion just swept, else None.
 
     Warns where no pose repeats.
     """

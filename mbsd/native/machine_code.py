@@ -23,7 +23,7 @@ from mbsd.base.errors import ModelError
 from mbsd.compiling.alternatives import kernel_for
 from mbsd.compiling.jit import kernel
 from mbsd.compiling.lazy_kernel import COMPILE
-from mbsd.equations.interactions import call
+from mbsd.equations.interactions.evaluation import apply
 from mbsd.equations.loads import Loads
 from mbsd.model.joint import SPECIALS
 from mbsd.native.memory import reader
@@ -193,4 +193,4 @@ def functions_at(packed: Packed, loads: Loads) -> Iterator[tuple[np.ndarray, tup
         for interaction, row in zip(rows.interactions, rows.interaction, strict=True):
             made = importlib.import_module(f"mbsd.equations.interactions.{interaction.function}").force
             yield loads.interaction, (row, FORCE), f"interaction_{interaction.function}", made
-            yield loads.interaction, (row, APPLY), "apply_interactions", call._apply()  # pyright: ignore[reportPrivateUsage]
+            yield loads.interaction, (row, APPLY), "apply_interactions", apply

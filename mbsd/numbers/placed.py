@@ -29,8 +29,10 @@ TABLES_OF_LOADS = ("element", "term", "interaction", "user", "user_body", "frict
 def repacked(m: Model, packed: Packed, saved: SavedModel) -> Packed | None:
     """Return ``packed`` of the ``saved`` model, with the changes in ``m``; None if a place has changed."""
     joints = m.joints, m.drivers, m.contacts
-    if m is not saved.m or packed.specials.names or not all(unchanged(table, saved) for table in joints):
+    if m is not saved.m or not all(unchanged(table, saved) for table in joints):
         return None
+    if packed.specials.phased or any("function" in joint.params for joint in packed.specials.joints):
+        return None  # their constants follow from the start pose, their addresses from the packed mechanism
     bodies = saved.bodies
     if any(body.com != before["com"] for body, before in bodies):
         return None

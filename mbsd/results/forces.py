@@ -20,10 +20,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbsd.arrays.approaches import stretches
 from mbsd.arrays.directory import directory, slice_of
 from mbsd.arrays.laws import compiled_laws
-from mbsd.arrays.loads import pack_loads
+from mbsd.arrays.loads import pack_loads, stretches
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import marker_axes, marker_places, relative_velocity
 from mbsd.arrays.states import own_states, widened, with_states

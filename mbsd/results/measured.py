@@ -1,4 +1,4 @@
-"""Values that forces measure along a motion: the scalar of an element, gaps of discs and journals, depths of flanks."""
+"""Values that forces measure along a motion: lengths and angles of elements, gaps, depths."""
 
 from __future__ import annotations
 
@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from mbsd.arrays.force_phases import relative_poses
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import marker_axes, marker_places, relative_velocity
+from mbsd.arrays.starts import relative_poses
 from mbsd.arrays.states import own_states
 from mbsd.base.codes import AXIS, LINE, TURN
-from mbsd.equations.interactions.law import OWN, STATE
-from mbsd.equations.interactions.surface import tabulate_stand
+from mbsd.equations.interactions.law import OWN, STATE, tabulate_stand
 from mbsd.model.force import Element
 
 if TYPE_CHECKING:

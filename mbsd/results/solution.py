@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Generic
 
 import numpy as np
 
-from mbsd.arrays.start_state import AnyModel
+from mbsd.arrays.starts import AnyModel
 from mbsd.base.arguments import finite_number, number_array, number_pair
 from mbsd.base.errors import ModelError
 from mbsd.base.names import Named, Suggesting, no_such, shown

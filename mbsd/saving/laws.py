@@ -17,9 +17,9 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.base.arguments import described
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such, shown
-from mbsd.base.users_function import described
 from mbsd.model.body import Body, Marker
 
 CYCLES = "mbsd.model.cylinders"

@@ -8,9 +8,9 @@ import sys
 from collections.abc import Callable, Iterable, Mapping, Sized
 from typing import Any
 
+from mbsd.base.arguments import named_parameters
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such, shown
-from mbsd.base.users_function import named_parameters
 
 MOST = 10_000_000
 """Points of one study."""

@@ -9,10 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.base.arguments import checked
+from mbsd.base.arguments import checked, described
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import Suggesting, shown
-from mbsd.base.users_function import described
 from mbsd.dynamics.batch.designs import Built, Designs, designs_of
 from mbsd.dynamics.batch.simulate_many import Simulations, checked_measures, quantities_of, simulations
 from mbsd.dynamics.measures.kinds import Measure

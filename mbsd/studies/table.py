@@ -8,9 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mbsd.base.csv_text import frame_csv
 from mbsd.base.errors import ModelError
-from mbsd.base.files import write_whole
+from mbsd.base.files import frame_csv, write_whole
 from mbsd.base.names import shown
 from mbsd.studies.points import REASON, Point
 from mbsd.studies.work import Result

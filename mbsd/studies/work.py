@@ -18,9 +18,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
 
+from mbsd.base.arguments import described
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
-from mbsd.base.users_function import described
 from mbsd.dependencies.inputs import Inputs
 from mbsd.dependencies.installed import is_installed
 from mbsd.dependencies.recorder import Recorder

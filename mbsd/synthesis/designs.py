@@ -25,8 +25,7 @@ from mbsd.kinematics.batch import parameters
 from mbsd.kinematics.design_sweeps import DesignSweeps, Moved, in_closed_form
 from mbsd.kinematics.march import kinematics_at
 from mbsd.kinematics.pose.close import assemble
-from mbsd.kinematics.prepare import prepare
-from mbsd.kinematics.prepared import Prepared
+from mbsd.kinematics.prepared import Prepared, prepare
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model
 from mbsd.numbers.names import Number, changed, numbers_named

@@ -9,11 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.base.arguments import checked, finite_number, number_array, switch, whole_number
+from mbsd.base.arguments import checked, finite_number, number_array, switch, users_progress, whole_number
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import Suggesting, no_such, shown
 from mbsd.base.quantity import counted
-from mbsd.base.users_function import users_progress
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model, Start, new_name, own_body
 from mbsd.synthesis.designs import Build, Designs

@@ -13,11 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.base.arguments import checked, finite_number, positive_number, switch, whole_number
+from mbsd.base.arguments import checked, finite_number, positive_number, switch, users_progress, whole_number
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import Suggesting, no_such, shown
 from mbsd.base.quantity import counted
-from mbsd.base.users_function import users_progress
 from mbsd.model.mechanism import Model
 from mbsd.synthesis.evaluation import Bounds, Condition, Moves, Tried, bounds_of, conditions_of
 

@@ -10,10 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.base.arguments import number_array
+from mbsd.base.arguments import described, named_parameters, number_array
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import no_such, shown
-from mbsd.base.users_function import described, named_parameters
 from mbsd.model.mechanism import Model
 from mbsd.numbers.names import Number
 

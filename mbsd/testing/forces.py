@@ -11,8 +11,7 @@ import numpy as np
 
 from mbsd.arrays.friction_along import normals_along
 from mbsd.arrays.laws import compiled_laws
-from mbsd.arrays.loads import pack_loads
-from mbsd.arrays.loads_along import loads_along
+from mbsd.arrays.loads import loads_along, pack_loads
 from mbsd.arrays.packing import Packed, pack
 from mbsd.arrays.states import ones_of, widened, with_states
 from mbsd.base.codes import POTENTIAL_TERMS, PUSH
@@ -62,7 +61,7 @@ def example(kind: ForceKind, seed: int = 0, to_ground: bool = False) -> tuple[Me
     m = Mechanism("example")
     first = m.ground if to_ground else m.body("first", 1.0, list(random.normal(size=2)), 1.0)
     second = m.body("second", 1.0, list(random.normal(size=2)), 1.0)
-    assert kind.example is not None, "register() refuses a kind without one"
+    assert kind.example is not None, "register_force() raises an error without one"
     kind.example(m, first.at(*random.normal(size=3)), second.at(*random.normal(size=3)))
     if [force.kind for force in m.forces.values()] != [kind]:
         raise AssertionError(f"{kind.name}: its example must add one '{kind.name}' and no other force")

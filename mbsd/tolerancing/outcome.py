@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from mbsd.base.csv_text import csv_text
 from mbsd.base.errors import ModelError
-from mbsd.base.files import write_whole
+from mbsd.base.files import csv_text, write_whole
 from mbsd.base.names import Suggesting
 from mbsd.tolerancing.dimensions.dimension import Dimension
 from mbsd.tolerancing.statistics.derivatives import parts

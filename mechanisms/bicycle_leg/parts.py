@@ -4,10 +4,9 @@ from math import cos, radians, sin
 
 from mechanisms.automatic import automatic
 from mechanisms.bicycle_leg.mechanism import Params, build
-from shared.shapes.bicycle import FEET, ergometer
 from shared.shapes.bodies import Bodies
 from shared.shapes.build import eased, extruded
-from shared.shapes.leg import RING, chainring, foot, seat, smooth
+from shared.shapes.leg import FEET, RING, chainring, ergometer, foot, seat, smooth
 from shared.shapes.outline import Point
 from shared.shapes.solid import Solid
 from shared.shapes.units import mm

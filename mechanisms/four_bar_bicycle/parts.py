@@ -4,9 +4,8 @@ from math import cos, radians, sin
 
 from mechanisms.automatic import automatic
 from mechanisms.four_bar_bicycle.mechanism import Params, build
-from shared.shapes.bicycle import FRONT, REAR, WHEEL, frame, wheel
 from shared.shapes.bodies import Bodies
-from shared.shapes.leg import dress, seat
+from shared.shapes.leg import FRONT, REAR, WHEEL, dress, frame, seat, wheel
 from shared.shapes.solid import Solid
 from shared.shapes.units import mm
 from shared.shapes.workpieces import block

@@ -13,11 +13,10 @@ from mechanisms.stages.parts.stage import current_parts
 from mechanisms.stages.solve import solving
 from mechanisms.stages.solve.skeleton_file import body_colours, main_material
 from shared.stage import console
-from shared.stage.errors import UserError
+from shared.stage.errors import UserError, did_you_mean
 from shared.stage.files import sources_hash
 from shared.stage.paths import ROOT, Out, mechanism_file
 from shared.stage.stages import Stage, key_of, versions
-from shared.stage.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from mbsd import Solution

@@ -17,7 +17,7 @@ from shared.stage.files import sources_hash
 from shared.stage.paths import ROOT, Out, mechanism_file, shown_file
 from shared.stage.stages import Stage, key_of
 
-SOURCES = [ROOT / "shared" / name for name in ("contract/shot.py", "contract/mount.py", "stage/jsonfile.py")]
+SOURCES = [ROOT / "shared" / name for name in ("contract/shot.py", "contract/parts.py", "stage/jsonfile.py")]
 LOOK = "MBSD_LOOK"
 """Environment variable of that wish, which mbsd.toml says."""
 

@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING, Any
 from mechanisms.stages.loading import loading
 from shared.contract.quantity import counted
 from shared.stage import console
-from shared.stage.errors import UserError
+from shared.stage.errors import UserError, did_you_mean
 from shared.stage.paths import Out, known_name
-from shared.stage.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     import pandas

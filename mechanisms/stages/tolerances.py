@@ -14,11 +14,10 @@ from mechanisms.stages.loading.loading import refuse_arguments
 from mechanisms.stages.parts.stage import current_parts
 from mechanisms.stages.solve import solving
 from shared.stage import console
-from shared.stage.errors import UserError
+from shared.stage.errors import UserError, did_you_mean
 from shared.stage.files import sources_hash, write_bytes
 from shared.stage.paths import NAME, ROOT, Out, is_single_file, known_name, mechanism_file, shown_file
 from shared.stage.stages import Stage, key_of, versions
-from shared.stage.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Tolerances

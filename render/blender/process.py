@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from shared.stage import locks
+from shared.stage import files
 from shared.stage.paths import refuse_links
 
 # How long Blender may be silent before it counts as hanging.
@@ -95,7 +95,7 @@ def sweep(home: Path) -> None:
         if folder.is_symlink() or not folder.is_dir():
             continue
         if (folder / LOCK).exists():
-            abandoned = locks.is_abandoned(folder / LOCK)
+            abandoned = files.is_abandoned(folder / LOCK)
         else:
             abandoned = _age(folder) > UNLOCKED
         if abandoned:
@@ -108,7 +108,7 @@ def _locked_folder(home: Path) -> tuple[Path, int]:
         with suppress(FileNotFoundError):
             lock = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT, 0o644)
             with suppress(OSError):  # a disk without locks: what a kill leaves there stays
-                locks.try_lock(lock)
+                files.try_lock(lock)
             if os.fstat(lock).st_nlink:
                 return folder, lock
             os.close(lock)  # another process took the folder for a leftover before it was locked

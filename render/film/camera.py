@@ -14,7 +14,7 @@ from render.film.composing import View, held, outermost
 from render.film.framing import CameraPose, Empty, axes, depth_of_field, half_field, in_studio, in_world, lifted, orbit
 from render.film.scene import Point
 from render.presets import ASPECT
-from shared.contract.mount import Mount
+from shared.contract.parts import Mount
 from shared.contract.shot import Camera
 
 Array = NDArray[np.float64]

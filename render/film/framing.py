@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.presets import ASPECT
-from shared.contract.mount import Vector, Z
+from shared.contract.parts import Vector, Z
 
 Array = NDArray[np.float64]
 Empty = tuple[float, float]

@@ -16,7 +16,7 @@ from shared.stage.stages import contract_sources, key_of
 if TYPE_CHECKING:
     from render.film.film import Film
 
-SHARED = ("belt_path", "belt_section", "clearance", "felt", "materials", "quantity", "shot", "signals", "spanning")
+SHARED = ("clearance", "geometry", "materials", "quantity", "shot", "signals")
 """Files of shared/contract/, beside those of motion and parts, that decide what is seen."""
 STAGE_OF = {"motion": "solve", "parts": "parts", "shot": "run"}
 
@@ -75,8 +75,8 @@ def read_film(out: Out, show: str = "", aspect: float = ASPECT) -> Film:
     """
     from render.film.film import Film
     from shared.contract import read_motion, read_parts
+    from shared.contract.geometry import with_rods
     from shared.contract.shot import read_shot, shown
-    from shared.contract.spanning import with_rods
 
     refuse_missing(out)
     shot = shown(read_shot(out.shot), show)

@@ -12,11 +12,10 @@ from render.film.scene import PieceSpec, SurfaceSpec
 from render.film.section import WHOLE, cuts_of
 from shared.contract import Motion, Parts, Piece
 from shared.contract.materials import MATERIALS
-from shared.contract.mount import Vector, Z
+from shared.contract.parts import Vector, Z
 from shared.contract.shot import Shot, Surface
-from shared.stage.errors import UserError
+from shared.stage.errors import UserError, did_you_mean
 from shared.stage.files import file_hash
-from shared.stage.suggestions import did_you_mean
 
 # The solids of a film: which there are, how they look, and that they are those of its motion.
 

@@ -11,7 +11,7 @@ import msgspec
 
 from render.film.framing import CameraPose
 from render.looks import Look
-from shared.contract.mount import Z
+from shared.contract.parts import Z
 from shared.contract.signals import Head
 
 Colour = tuple[float, float, float]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from render.film.poses import local_place
 from shared.contract import BodyMotion, Motion
-from shared.contract.felt import felt
+from shared.contract.geometry import felt
 from shared.contract.shot import Quantity
 
 # Quantities of straight arrows: forces, reactions, velocities, accelerations over the motion, each where it acts.

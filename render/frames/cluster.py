@@ -20,9 +20,7 @@ from render.blender.picture_file import fault_of, most_bytes, name_of
 from render.blender.process import START, Patience
 from render.frames.store import FrameStore
 from shared.cluster.address import connected
-from shared.cluster.contents import content_hash
-from shared.cluster.deal import Deal
-from shared.cluster.hands import Work
+from shared.cluster.deal import Deal, Work, content_hash
 from shared.cluster.preload import FRAMES
 from shared.stage.console import say
 from shared.stage.signals import terminable

@@ -24,7 +24,7 @@ from render.film.solids import MILLIMETRE
 from render.frames.store import FrameIndex, FrameStore, Timing
 from render.presets import Preset
 from shared.cluster.address import address
-from shared.contract.mount import Z
+from shared.contract.parts import Z
 from shared.stage import jsonfile
 from shared.stage.console import duration, progress, say, warn
 from shared.stage.errors import UserError

@@ -16,7 +16,7 @@ from typing import Annotated, Literal
 import msgspec
 
 from render.blender.picture_file import fault_of_chunks, is_as_named
-from shared.stage import jsonfile, locks
+from shared.stage import files, jsonfile
 from shared.stage.console import say
 from shared.stage.errors import Busy, UserError
 from shared.stage.files import refusal, write_bytes
@@ -148,7 +148,7 @@ class FrameStore:
     def _lock(self, handle: int) -> None:
         end, announced = time.monotonic() + WAIT, False
         try:
-            while not locks.try_lock(handle):
+            while not files.try_lock(handle):
                 if time.monotonic() >= end:
                     raise Busy(f"another process renders into {self.folder}; wait for it or stop it")
                 if not announced:

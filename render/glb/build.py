@@ -20,7 +20,7 @@ from render.film.solids import read_triangles
 from render.glb.cut import faces_of, front_of, pieces_of
 from render.glb.document import CLEARCOAT, INDICES, VERTICES, Animation, Document, Paints, smooth
 from render.glb.tubes import Springs, add_belt
-from shared.contract.mount import Vector, Z
+from shared.contract.parts import Vector, Z
 
 Quaternion = tuple[float, float, float, float]
 

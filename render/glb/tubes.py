@@ -19,7 +19,7 @@ from render.film.tubes.spirals import Spiral
 from render.film.tubes.stretched import Path, Stretched
 from render.glb.document import INDICES, VERTICES, Animation, Document, Paints
 from shared.contract import Motion
-from shared.contract.belt_section import LONG, PIN
+from shared.contract.geometry import LONG, PIN
 
 # Tubes as meshes of a glTF document.
 

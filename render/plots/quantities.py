@@ -19,8 +19,7 @@ from render.magnitudes import (
     without_noise,
 )
 from shared.contract import Motion
-from shared.stage.errors import UserError
-from shared.stage.suggestions import did_you_mean
+from shared.stage.errors import UserError, did_you_mean
 
 # Quantities of a motion by the names that SPECTRA gives them: what the machine does to its frame, and parts of it.
 

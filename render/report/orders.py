@@ -7,7 +7,7 @@ import numpy as np
 from render.magnitudes import floor_of, force_floor
 from render.report.written import Amounts, table, written
 from shared.contract import Motion
-from shared.contract.vibration import Harmonics
+from shared.contract.motion import Harmonics
 
 LEAST = 2e-3
 """Orders of less than this part of the largest are left out."""

@@ -12,11 +12,10 @@ from typing import Any
 from render.film.inputs import read_film
 from render.glb import glb_key
 from shared.stage.console import say
-from shared.stage.errors import UserError
+from shared.stage.errors import UserError, did_you_mean
 from shared.stage.files import sources_hash, write_bytes
 from shared.stage.paths import Out
 from shared.stage.stages import Stage, key_of
-from shared.stage.suggestions import did_you_mean
 
 FORMATS = {"usd": ".usdc", "usdz": ".usdz"}
 """By name: the ending of the file."""

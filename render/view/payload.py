@@ -19,9 +19,9 @@ from render.report.transmission import marks
 from render.view.loads import arcs_of, arrows_of, clearance_of
 from render.view.solid import with_parts
 from shared.contract import JointMotion, Motion, read_motion, read_parts
+from shared.contract.geometry import with_rods
 from shared.contract.shot import Shot, read_shot
 from shared.contract.skeleton import Carrier, Moving, Stroke, read_skeleton
-from shared.contract.spanning import with_rods
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
 from shared.stage.paths import Out

@@ -5,14 +5,63 @@ from __future__ import annotations
 import argparse
 import ipaddress
 import os
+import signal
 import socket
+import subprocess
 import sys
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
-from shared.cluster import address, authority, keeper
+from shared.cluster import address
 from shared.stage.console import run_cli, say
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, out_root
+from shared.stage.signals import end_with_parent, terminable
+
+# Keeper of a worker: Dask's worker ends with its scheduler, and another one waits for the next.
+
+
+PAUSE = 1.0
+"""s between the end of a worker and its successor, which itself waits until a scheduler answers."""
+END = 20.0
+"""s in which a worker ends that was asked to."""
+
+
+def keep(command: Sequence[str], scheduler: str) -> int:
+    """Run Dask's worker by ``command`` again and again; return its exit code after an error.
+
+    SIGTERM, SIGHUP or Ctrl-C end it, and the worker with it. The worker gets SIGTERM if this process is killed.
+    """
+    with terminable():
+        while True:
+            code = _run(command)
+            if code != 0:
+                return code if code > 0 else 128 - code
+            say("cluster", f"the scheduler {scheduler} is gone; this worker waits until it is back (Ctrl-C ends it)")
+            time.sleep(PAUSE)
+
+
+def _run(command: Sequence[str]) -> int:
+    process = subprocess.Popen(
+        command,
+        start_new_session=True,  # Ctrl-C on the terminal reaches us alone
+        preexec_fn=partial(end_with_parent, signal.SIGTERM),
+    )
+    try:
+        return process.wait()
+    finally:
+        if process.poll() is None:
+            process.terminate()
+            try:
+                process.wait(END)
+            except subprocess.TimeoutExpired:
+                with suppress(ProcessLookupError):
+                    os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
+
 
 WITHOUT_HTTP = ("--no-dashboard", "--dashboard-address", "127.0.0.1:0", "--preload", "shared.cluster.preload")
 """Dask starts its HTTP server always, by default on all interfaces: it begins on loopback, and the preload ends it."""
@@ -21,7 +70,7 @@ WITHOUT_HTTP = ("--no-dashboard", "--dashboard-address", "127.0.0.1:0", "--prelo
 def main() -> None:
     """Read the command line and run its command.
 
-    The scheduler takes the place of this process; a worker is kept by it (keeper.py).
+    The scheduler takes the place of this process; a worker is kept by this one, see :func:`keep`.
     """
     parser = argparse.ArgumentParser(prog="python -m shared.cluster", description="Scheduler, workers, certificates.")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
@@ -40,8 +89,8 @@ def main() -> None:
     arguments = parser.parse_args()
     if arguments.command == "certificates":
         if not arguments.folder:
-            raise UserError("say where the certificates go: make certificates CLUSTER_TLS=folder")
-        authority.make(Path(arguments.folder))
+            raise UserError("give a folder for the certificates: make certificates CLUSTER_TLS=folder")
+        address.make(Path(arguments.folder))
         say(
             "cluster",
             f"{arguments.folder}: ca.pem, cert.pem, key.pem; copy the folder to every machine, show key.pem to nobody",
@@ -57,12 +106,12 @@ def main() -> None:
         sys.stdout.flush()
         os.execv(sys.executable, scheduler_command(host, arguments.port))
     if not arguments.address:
-        raise UserError("say where the scheduler is: make worker CLUSTER=tcp://127.0.0.1:8786")
+        raise UserError("give the address of the scheduler: make worker CLUSTER=tcp://127.0.0.1:8786")
     os.environ[address.VARIABLE] = arguments.address
     address.address()
     folder = out_root() / ".cluster" / "dask"
     folder.mkdir(parents=True, exist_ok=True)
-    sys.exit(keeper.keep(worker_command(arguments.address, host, arguments.name, folder), arguments.address))
+    sys.exit(keep(worker_command(arguments.address, host, arguments.name, folder), arguments.address))
 
 
 def scheduler_command(host: str, port: int) -> list[str]:
@@ -98,7 +147,7 @@ def refuse_open(host: str, plain: bool) -> None:
         return
     raise UserError(
         f"HOST={host} can be reached by others, and a worker runs what it is sent: make certificates, and give their "
-        "folder as CLUSTER_TLS=folder, or say --plain where nobody else can reach that network"
+        "folder as CLUSTER_TLS=folder, or give --plain where nobody else can reach that network"
     )
 
 

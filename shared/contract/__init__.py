@@ -19,14 +19,14 @@ from shared.contract.motion import (
     DriverMotion,
     Energy,
     EventMark,
+    Harmonics,
     JointMotion,
     Motion,
     PointMotion,
+    Vibration,
+    completed,
 )
-from shared.contract.mount import Mount, mounted
-from shared.contract.older import completed
-from shared.contract.parts import PARTS_UNITS, BodyParts, End, Held, Mass, Parts, Piece, Rolling
-from shared.contract.vibration import Harmonics, Vibration
+from shared.contract.parts import PARTS_UNITS, BodyParts, End, Held, Mass, Mount, Parts, Piece, Rolling, mounted
 from shared.stage import jsonfile
 from shared.stage.errors import UserError
 from shared.stage.face import to_run

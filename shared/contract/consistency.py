@@ -83,7 +83,7 @@ def refuse_inconsistent_parts(parts: Parts, path: Path | str) -> None:
     _refuse_unfit_names({"bodies": parts.bodies, "without_solids": parts.without_solids}, path)
     for body in parts.without_solids:
         if body in parts.bodies:
-            raise UserError(f"{path}: without_solids names '{body}', which has solids; leave it out of one of the two")
+            raise UserError(f"{path}: without_solids names '{body}', which has solids; remove it from one of the two")
     for index, pair in enumerate(parts.may_touch):
         for body in pair:
             if body not in parts.bodies or pair[0] == pair[1]:

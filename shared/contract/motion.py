@@ -12,18 +12,49 @@ from typing import Annotated, Literal
 import msgspec
 
 from shared.contract.base import UNITS, NonNegative, Positive, Provenance, Series, Strict
-from shared.contract.loads import (
-    Action,
-    Acts,
-    ContactMotion,
-    EffortUnit,
-    ForceMotion,
-    Look,
-    Pair,
-    Shape,
-    ValueUnit,
-)
-from shared.contract.vibration import Vibration
+from shared.contract.loads import Action, Acts, ContactMotion, EffortUnit, ForceMotion, Look, Pair, Shape, ValueUnit
+
+# Vibration of the frame in data.json: inertia forces, centre of mass, harmonics of the crank.
+
+
+class Harmonics(Strict, kw_only=True):
+    """Harmonics of a quantity that repeats with the crank, one for each order of :class:`Vibration`.
+
+    Along an axis it is mean + sum of amplitude cos(order phi + phase), phi the crank's angle.
+    """
+
+    unit: str
+    mean: list[float]
+    """Along each axis: one of a number, two (x, y) of a vector."""
+    amplitude: list[Series]
+    phase: list[Series]
+    """rad."""
+    forward: Series
+    """Size of the part that turns with the crank, order times as fast; half of the amplitude of a number."""
+    backward: Series
+    """Size of the part that turns against it."""
+
+
+class Vibration(Strict, kw_only=True):
+    """Vibration of a motion that repeats with a crank."""
+
+    about: tuple[float, float]
+    """Place of ground about which the moment is (m): the axis of the crank."""
+    fx: Series
+    """Force of the inertia of all bodies on the frame (N)."""
+    fy: Series
+    moment: Series
+    """N m."""
+    x: Series
+    """Centre of mass of all bodies (m)."""
+    y: Series
+    crank: str
+    turns: int
+    """Turns of the crank in a cycle."""
+    order: Series
+    harmonics: dict[str, Harmonics]
+    """By quantity: the shaking force, moment and couple, efforts of drivers, reactions of joints with ground."""
+
 
 _FIRST = {
     "axes": "x right, y up, angles counter-clockwise and never wrapped",
@@ -39,7 +70,7 @@ _SECOND = _FIRST | {
     "events": "rows right before and right after an event share its time: poses agree there, rates may differ",
 }
 _THIRD = _SECOND | {
-    "acts": "where a joint or contact acts with fx, fy and the torque of acts; null: at (x, y) with its own torque",
+    "acts": "where a joint or contact acts with fx, fy and the torque of acts; null: at (x, y) with its own torque"
 }
 CONVENTIONS_OF = {1: _FIRST, 2: _SECOND, 3: _THIRD}
 """By version of the file."""
@@ -191,8 +222,8 @@ class Diagnostics(Strict, kw_only=True):
 class Motion(Strict, kw_only=True):
     """Motion of one mechanism: data.json.
 
-    Version 2 did not say where things act, in which units and how they look (older.py); version 1 had no forces and
-    contacts, and less of the rest.
+    Version 2 did not say where things act, in which units and how they look; version 1 had no forces and contacts, and
+    less of the rest.
     """
 
     schema: Literal["mbsd.motion"] = "mbsd.motion"
@@ -226,3 +257,41 @@ class Motion(Strict, kw_only=True):
     notes: list[str] = []
     """Times left out because efforts do not exist there, a sentence each."""
     diagnostics: Diagnostics
+
+
+# Fields that data.json of versions 1 and 2 lacks: they follow from the kinds of that time.
+
+
+PAIRS: dict[str, Pair] = {"revolute": "pin", "prismatic": "guide", "pin_in_slot": "slot"}
+DRIVING = ("torque", "force", "actuator")
+
+
+def completed(motion: Motion) -> Motion:
+    """Return the motion with pairs and units.
+
+    Nothing is known of looks, or of loads that act beside a marker.
+    """
+    if motion.schema_version >= 3:
+        return motion
+    replace = msgspec.structs.replace
+    return replace(
+        motion,
+        joints={name: replace(joint, pair=PAIRS.get(joint.kind)) for name, joint in motion.joints.items()},
+        drivers={
+            name: replace(driver, **dict(zip(("unit", "effort_unit"), _units("angle" in driver.kind), strict=True)))
+            for name, driver in motion.drivers.items()
+        },
+        forces={
+            name: replace(
+                force,
+                unit=None if force.measures is None else _units(force.measures == "angle")[0],
+                effort_unit=_units(force.measures == "angle")[1],
+                drives=force.kind in DRIVING,
+            )
+            for name, force in motion.forces.items()
+        },
+    )
+
+
+def _units(of_angle: bool) -> tuple[ValueUnit, EffortUnit]:
+    return ("rad", "N m") if of_angle else ("m", "N")

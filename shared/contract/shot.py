@@ -15,10 +15,9 @@ import msgspec
 
 from shared.contract import Motion, Parts
 from shared.contract.materials import MATERIALS
-from shared.contract.mount import Kind
+from shared.contract.parts import Kind
 from shared.stage import jsonfile
-from shared.stage.errors import UserError
-from shared.stage.suggestions import did_you_mean
+from shared.stage.errors import UserError, did_you_mean
 
 Unit = Annotated[float, msgspec.Meta(ge=0, le=1)]
 Positive = Annotated[float, msgspec.Meta(gt=0)]
@@ -311,7 +310,7 @@ def _refuse_unseen(story: Story, mechanism: str) -> None:
         if getattr(story, field) is not None and story.shots is not None and seen_in not in story.shots:
             raise UserError(
                 f"{mechanism}: shot.story.{field} is for the shot '{seen_in}', which shot.story.shots leaves out; "
-                f"add '{seen_in}' to the shots, or take the {field} away"
+                f"add '{seen_in}' to the shots, or remove the {field}"
             )
 
 
@@ -323,6 +322,6 @@ def _known(mechanism: str, field: str, name: str, names: Iterable[str]) -> None:
     known = list(names)
     if name not in known:
         raise UserError(
-            f"{mechanism}: shot.{field} names '{name}', which is not there; known: {', '.join(known) or 'none'}"
+            f"{mechanism}: shot.{field} names '{name}', which does not exist; known: {', '.join(known) or 'none'}"
             f"{did_you_mean(name, known)}"
         )

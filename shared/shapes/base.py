@@ -8,8 +8,7 @@ from collections.abc import Sequence
 import cadquery as cq
 
 from shared.shapes import outline
-from shared.shapes.build import bore, eased, extruded, turned
-from shared.shapes.once import built_once
+from shared.shapes.build import bore, built_once, eased, extruded, turned
 from shared.shapes.solid import placed
 
 
@@ -32,15 +31,7 @@ def base_plate(
     shape = eased(shape, edge, ">Z", chamfer=True)
     shape = eased(shape, edge / 2, "<Z", chamfer=True)
     through = bore(screw + 0.5, -thickness, 0, 0)
-    seat = turned(
-        [
-            (0, -head[1]),
-            (head[0] / 2, -head[1]),
-            (head[0] / 2, -0.4),
-            (head[0] / 2 + 0.9, 0.5),
-            (0, 0.5),
-        ]
-    )
+    seat = turned([(0, -head[1]), (head[0] / 2, -head[1]), (head[0] / 2, -0.4), (head[0] / 2 + 0.9, 0.5), (0, 0.5)])
     for x, y in counterbores:
         shape = shape.cut(placed(through, x, y)).cut(placed(seat, x, y))
     for x, y, diameter, depth in tapped:

@@ -37,7 +37,7 @@ class Bodies(dict[str, list[Solid]]):
         self.stand: Callable[[Mapping[str, list[Solid]]], list[Solid]] | None = None
         """Makes the solids of ground with a stand, once all solids are there; None where ground has what it needs."""
         self.mount: tuple[str, tuple[float, float, float]] | None = None
-        """Kind and up of shared/contract/mount.py: how ground stands in the world; None where nobody says."""
+        """Kind and up of shared/contract/parts.py: how ground stands in the world; None where nobody says."""
         self.notes: list[str] = []
         """Sentences for the user, which the parts stage prints."""
         self._touching: set[tuple[str, str]] = set()
@@ -68,7 +68,7 @@ class Bodies(dict[str, list[Solid]]):
         UserError for a body that has no solids yet, whose main piece they would be.
         """
         if not self.get(body):
-            raise UserError(f"dress('{body}'): it has no solids that are to be dressed; there are: {', '.join(self)}")
+            raise UserError(f"dress('{body}'): it has no solids to dress; there are: {', '.join(self)}")
         self[body] = [*self[body], *(replace(solid, dressing=True) for solid in solids)]
 
     def leave_out(self, body: str) -> None:

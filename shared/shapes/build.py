@@ -2,11 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import cache, wraps
 
 import cadquery as cq
 
 from shared.shapes.outline import circle
+
+# Cache of built solids, since screws, washers and bushings of the same numbers occur many times.
+
+
+def built_once[**P](builder: Callable[P, cq.Workplane]) -> Callable[P, cq.Workplane]:
+    """Return a builder that builds once for the same arguments; each call gives its own Workplane."""
+
+    @cache
+    def solid(*args: P.args, **kwargs: P.kwargs) -> cq.Shape:
+        return builder(*args, **kwargs).val()  # pyright: ignore[reportReturnType]  (a builder's value is a shape)
+
+    @wraps(builder)
+    def build_once(*args: P.args, **kwargs: P.kwargs) -> cq.Workplane:
+        return cq.Workplane(obj=solid(*args, **kwargs))
+
+    return build_once
 
 
 def extruded(outline: cq.Wire, height: float, z: float = 0.0, holes: Sequence[cq.Wire] = ()) -> cq.Workplane:
@@ -35,16 +52,7 @@ def bore(diameter: float, z0: float, z1: float, chamfer: float = 0.0) -> cq.Work
     if c == 0:
         return extruded(circle(0, 0, r), z1 - z0 + 2 * over, z0 - over)
     wide = r + c + over
-    return turned(
-        [
-            (0, z0 - over),
-            (wide, z0 - over),
-            (r, z0 + c),
-            (r, z1 - c),
-            (wide, z1 + over),
-            (0, z1 + over),
-        ]
-    )
+    return turned([(0, z0 - over), (wide, z0 - over), (r, z0 + c), (r, z1 - c), (wide, z1 + over), (0, z1 + over)])
 
 
 def eased(shape: cq.Workplane, size: float, faces: str = "|Z", chamfer: bool = False) -> cq.Workplane:

@@ -13,7 +13,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import IO, NoReturn, Protocol
 
-from shared.stage import lineage
+from shared.stage import signals
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
 from shared.stage.files import OF_THE_DISK, refusal
@@ -126,7 +126,7 @@ def run_cli(main: Callable[[], int | None]) -> NoReturn:
     """
     try:
         with terminable():
-            lineage.end_with_make()
+            signals.end_with_make()
             without_home(Path(os.path.abspath(out_root())) / HOME)
             code = main() or 0
             sys.stdout.flush()
@@ -176,7 +176,7 @@ def _missing_package(error: ImportError) -> str:
 
 def _reason(stop: BaseException) -> str:
     """Return the reason of a signal, as far as this process knows."""
-    if lineage.ended:
+    if signals.ended:
         return ", because the command that started this stage has ended"
     if isinstance(stop, Stopped) and stop.code == 128 + signal.SIGHUP:
         return f", because its terminal was closed ({to_run('overnight')} works without one)"

@@ -1,22 +1,60 @@
-"""Files written whole: a temporary file beside the target, then a rename."""
+"""Files written whole (a temporary file beside the target, then a rename), locked by one process, and hashed."""
 
 from __future__ import annotations
 
 import errno
+import fcntl
 import glob
 import hashlib
 import os
+import re
 import secrets
 import shutil
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from shared.stage import locks
 from shared.stage.errors import UserError
 from shared.stage.memory import recalled
 from shared.stage.paths import refuse_links
 
+# Locks on files that belong to one process. The system releases a lock when its owner ends.
+#
+# A lock therefore tells what the number of a process cannot: whether the owner still runs, also in a container, after a
+# restart of the machine, or on another computer that shares the disk.
+
+
+def try_lock(handle: int) -> bool:
+    """Lock an open file for this process, without waiting; False if another process holds it.
+
+    Raises OSError where the disk knows no locks.
+    """
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
+
+
+def is_abandoned(path: Path) -> bool:
+    """Return True if the process that locked this file has ended; False if that is unknown."""
+    try:
+        handle = os.open(path, os.O_RDWR | os.O_NOFOLLOW)
+    except OSError:
+        return False
+    try:
+        return try_lock(handle)
+    except OSError:
+        return False
+    finally:
+        os.close(handle)
+
+
+# Files written whole: a temporary file beside the target, then a rename.
+
+
+TEMPORARY = re.compile(r"\..+-[0-9a-f]{8}(\.[^.]+)?")
+"""Name of a temporary file; mbsd/base/files.py gives the same."""
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 FORBIDDEN = (errno.EACCES, errno.EPERM, errno.EROFS)
 IN_THE_WAY = (errno.EISDIR, errno.ENOTDIR, errno.EEXIST, errno.ENOTEMPTY)
@@ -41,7 +79,7 @@ def whole_file(path: Path, put: Callable[[Path, Path], object] = os.replace) -> 
     handle = -1
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        _remove_leftovers(path)
+        remove_leftovers(path.parent, f".{glob.escape(path.stem)}-*{glob.escape(path.suffix)}")
         handle, temporary = _locked_file(path)
         yield temporary
         with temporary.open("rb") as written:
@@ -87,16 +125,19 @@ def _locked_file(path: Path) -> tuple[int, Path]:
         except FileExistsError:
             continue
         with suppress(OSError):  # a disk without locks: what a kill leaves there stays
-            locks.try_lock(handle)
+            try_lock(handle)
         if os.fstat(handle).st_nlink:
             return handle, temporary
         os.close(handle)  # another process took it for a leftover before it was locked
 
 
-def _remove_leftovers(path: Path) -> None:
-    """Remove temporary files of ``path`` whose writer was killed, as the lock shows."""
-    for left in path.parent.glob(f".{glob.escape(path.stem)}-*{glob.escape(path.suffix)}"):
-        if locks.is_abandoned(left):
+def remove_leftovers(folder: Path, name: str = ".*-*") -> None:
+    """Remove temporary files in ``folder`` whose writer was killed, as the lock shows.
+
+    ``name`` is their pattern: those of one target, or of all, such as the half film of a killed ``mbsd animate``.
+    """
+    for left in folder.glob(name):
+        if TEMPORARY.fullmatch(left.name) and is_abandoned(left):
             left.unlink(missing_ok=True)
 
 

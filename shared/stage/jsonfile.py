@@ -48,7 +48,7 @@ def read[T: msgspec.Struct](path: Path, kind: type[T]) -> T:
     try:
         content = path.read_bytes()
     except FileNotFoundError:
-        raise UserError(f"{path} does not exist; make the stage that writes it first") from None
+        raise UserError(f"{path} does not exist; run the stage that writes it first") from None
     except OSError as error:
         raise UserError(f"cannot read {path}: {error.strerror or error}") from error
     return decode(content, kind, path)
@@ -66,10 +66,10 @@ def decode[T: msgspec.Struct](content: bytes, kind: type[T], path: Path | str) -
             _refuse_doubled(content, path)
     except UnicodeDecodeError as error:
         raise UserError(
-            f"{path}: byte {error.start} is {content[error.start]:#04x}, which is no UTF-8; make it again"
+            f"{path}: byte {error.start} is {content[error.start]:#04x}, which is not UTF-8; rebuild it"
         ) from error
     except RecursionError as error:
-        raise UserError(f"{path}: it is nested too deep for this kind of file; make it again") from error
+        raise UserError(f"{path}: it is nested too deeply for this kind of file; rebuild it") from error
     except msgspec.DecodeError as error:
         raise UserError(f"{path}: {_reason(content, kind, error)}") from error
     return document

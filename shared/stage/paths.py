@@ -10,11 +10,10 @@ import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 
-from shared.stage.errors import UserError
+from shared.stage.errors import UserError, did_you_mean
 from shared.stage.face import to_run
 from shared.stage.memory import recalled
 from shared.stage.scale import Scale
-from shared.stage.suggestions import did_you_mean
 
 ROOT = Path(__file__).resolve().parents[2]
 """The folder that holds the rooms: the clone, or the one that an installed package brings them in."""
@@ -307,7 +306,7 @@ def mechanism_folder(name: str) -> Path:
     source = _source(owner_of(name))
     if source is not None and source.name == "mechanism.py" and _is_twofold(source):
         owner = owner_of(name)
-        raise UserError(f"{owner}/mechanism.py and {owner}.py in {MECHANISMS} have one name; give one another name")
+        raise UserError(f"{owner}/mechanism.py and {owner}.py in {MECHANISMS} have the same name; rename one of them")
     if source is None:
         known, name = mechanism_names(), mechanism_name(name)
         if name in RESERVED and name in unfit_names():

@@ -47,12 +47,12 @@ def scale_of(text: str) -> Scale | None:
     ratio = Fraction(match[1]) / below if match and below else Fraction(0)
     if not SMALLEST <= ratio <= LARGEST:
         raise UserError(
-            f"{said(scale=text)} is no scale between 1:{1 / SMALLEST} and {LARGEST}:1; write a length of the model to "
-            f"that of the machine, such as {said(scale='1:20')}, 1/20 or 0.05"
+            f"{said(scale=text)} is not a scale between 1:{1 / SMALLEST} and {LARGEST}:1; write the ratio of model "
+            f"to machine, such as {said(scale='1:20')}, 1/20 or 0.05"
         )
     if match and match[2] is None and ratio > 1:
         raise UserError(
-            f"{said(scale=text)} may mean two things; write {said(scale=f'1:{text}')} for a small model, {text}:1 for "
+            f"{said(scale=text)} is ambiguous; write {said(scale=f'1:{text}')} for a small model, {text}:1 for "
             "a large one"
         )
     return Scale(ratio.numerator, ratio.denominator)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from studio.command.options import OPTIONS
+from studio.command.stages import OPTIONS
 from studio.command.table import COMMANDS
 
 BASH = """\

@@ -10,14 +10,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
-from shared.stage.errors import UserError
+from shared.stage.errors import UserError, did_you_mean
 from shared.stage.face import is_of_make
-from shared.stage.paths import known_name, mechanism_names, work_in
-from shared.stage.suggestions import did_you_mean
-from studio.command import doing, made
-from studio.command.options import OPTIONS
+from shared.stage.files import remove_leftovers
+from shared.stage.paths import Out, known_name, mechanism_names, work_in
+from studio.command import commands, running
 from studio.command.place import Place, is_path, place_of, place_of_file
 from studio.command.running import Run
+from studio.command.stages import OPTIONS
 from studio.command.table import COMMANDS, Command
 
 EPILOG = """\
@@ -71,7 +71,7 @@ class Once(argparse.Action):
         option = OPTIONS[self.dest.replace("_", "-")]
         given.append(values)
         if not option.joint and len(set(given)) > 1:
-            parser.error(f"--{option.name} takes one value, and has {' and '.join(given)}")
+            parser.error(f"--{option.name} takes one value, but was given {' and '.join(given)}")
         setattr(namespace, self.dest, option.joint.join(given) if option.joint else values)
 
 
@@ -145,9 +145,11 @@ def main(arguments: Sequence[str] | None = None, make: bool = False) -> int:
         planned=asked.plan,
     )
     operand = _operand(command, asked, place)
-    code = doing.do(command, operand, said, run)
+    if command.of == "machine" and not run.planned:
+        remove_leftovers(Out(operand).folder)
+    code = commands.do(command, operand, said, run)
     if run.quiet and not run.planned:
-        print(made.summary(command, operand, run, code))
+        print(running.summary(command, operand, run, code))
     return code
 
 
@@ -175,7 +177,7 @@ def _said(command: Command, asked: argparse.Namespace, place: Place, make: bool)
             where = "" if getattr(asked, name.replace("-", "_")) else " in mbsd.toml"
             hint = did_you_mean(value, option.choices)
             spelled = f"{option.variable}={value}" if make else f"--{name} {value}"
-            raise UserError(f"{spelled}{where} is no {name}; choose one of: {', '.join(option.choices)}{hint}")
+            raise UserError(f"{spelled}{where} is not a valid {name}; choose one of: {', '.join(option.choices)}{hint}")
         said[name] = value
     return said
 
@@ -191,7 +193,7 @@ def _operand(command: Command, asked: argparse.Namespace, place: Place) -> str:
         names = mechanism_names()
         if len(names) != 1:
             there = f"there is: {', '.join(names)}" if names else "there is none here; mbsd new excavator makes one"
-            raise UserError(f"mbsd {command.name}: say which machine; {there}")
+            raise UserError(f"mbsd {command.name}: name a mechanism; {there}")
         name = names[0]
     return known_name(name)
 

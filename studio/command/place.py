@@ -1,15 +1,85 @@
-"""Place in which a command works: the clone, or the nearest folder of the user's own."""
+"""Place in which a command works: the clone, or the nearest folder of the user with its settings, ``mbsd.toml``."""
 
 from __future__ import annotations
 
+import codecs
 import os
 from dataclasses import dataclass
 from pathlib import Path
 
+import msgspec
+
 from shared.stage.errors import UserError
 from shared.stage.face import is_of_make
 from shared.stage.paths import ROOT, name_of_folder
-from studio.command.settings import FILE, Settings, read
+
+# ``mbsd.toml``: settings of a user's folder for all its mechanisms.
+
+
+FILE = "mbsd.toml"
+LARGEST = 16_384
+"""Bytes of the file, at most: tomllib takes minutes for a key of a hundred thousand parts."""
+
+
+class Settings(msgspec.Struct, forbid_unknown_fields=True, kw_only=True, rename="kebab"):
+    """Values of the file; each is the default of the option of the same name."""
+
+    preset: str = ""
+    aspect: str = ""
+    show: str = ""
+    sound: str = ""
+    spectra: str = ""
+    bed: str = ""
+    gap: float | None = None
+    """mm"""
+    scale: str = ""
+    """Scale of models that are printed: 1:20."""
+    watts: float | None = None
+    look: str = ""
+    """Look of machines whose shot names none."""
+    out: str = ""
+    """Folder of results, from the file's own folder; ``out`` where it is not said."""
+    cluster: str = ""
+    """Address of a scheduler: tcp://name:8786."""
+    cluster_tls: str = ""
+    """Folder of its certificates, from the file's own folder."""
+
+    def word(self, option: str) -> str:
+        """Return the value of an option; empty if the file has none."""
+        value = getattr(self, option.replace("-", "_"), None)
+        return "" if value is None else f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def read(folder: Path) -> Settings:
+    """Return the settings of a folder, empty ones without a file. Raises UserError for an invalid file."""
+    file = folder / FILE
+    try:
+        with file.open("rb") as stream:
+            content = stream.read(LARGEST + 1)
+    except FileNotFoundError:
+        return Settings()
+    except OSError as error:
+        raise UserError(f"{file} cannot be read: {error.strerror}") from error
+    if len(content) > LARGEST:
+        raise UserError(f"{file} is larger than {LARGEST // 1024} kB; {_known()}")
+    try:
+        settings = msgspec.toml.decode(content.removeprefix(codecs.BOM_UTF8), type=Settings)
+    except RecursionError as error:
+        raise UserError(f"{file}: it is nested too deeply; {_known()}") from error
+    except (msgspec.DecodeError, ValueError) as error:  # a number of 5000 digits is a ValueError
+        raise UserError(f"{file}: {error}; {_known()}") from error
+    for field in msgspec.structs.fields(Settings):
+        value = getattr(settings, field.name)
+        if isinstance(value, str) and not value.isprintable():
+            raise UserError(f"{file}: {field.encode_name} is {value!r}, with characters that cannot be printed")
+    return settings
+
+
+def _known() -> str:
+    return f"its fields are: {', '.join(field.encode_name for field in msgspec.structs.fields(Settings))}"
+
+
+# Place in which a command works: the clone, or the nearest folder of the user's own.
 
 
 @dataclass(frozen=True)
@@ -73,7 +143,7 @@ def place_of_file(folder: Path, operand: str) -> tuple[Place, str]:
     if path.is_file() and (path.parent / "mechanism.py").is_file():
         path = path.parent
     if not (path.is_file() and path.suffix == ".py") and not (path / "mechanism.py").is_file():
-        what = "has no mechanism.py" if path.is_dir() else "is no file or folder of a mechanism"
+        what = "has no mechanism.py" if path.is_dir() else "is not a file or folder of a mechanism"
         raise UserError(f"{operand} {what}; give the name or the path of a mechanism, such as lamp, lamp.py or lamp/")
     for place in (place_of(folder), place_of(path.parent), place_of(path if path.is_dir() else path.parent)):
         machines = place.machines or ROOT / "mechanisms"
@@ -86,7 +156,7 @@ def place_of_file(folder: Path, operand: str) -> tuple[Place, str]:
 
 def _refuse_none(folder: Path) -> None:
     if not folder.is_dir():
-        raise UserError(f"{folder} is no folder; say which one holds the machines")
+        raise UserError(f"{folder} is not a folder; give the folder of the mechanisms")
 
 
 def _inside(folder: Path, machines: Path) -> str:

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from shared.stage import locks
+from shared.stage import files
 from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.files import refusal
@@ -48,7 +48,7 @@ def run(host: str, folder: str = "") -> list[str]:
     with _locked(arriving) as lock:
         before = _bytes(arriving)
         if before:
-            say("fetch", f"{before / 1e6:.1f} MB are here from a run that was stopped")
+            say("fetch", f"{before / 1e6:.1f} MB remain from a stopped run")
         say("fetch", f"{source} to {films}")
         result = transfer(source, arriving, films, lock, report)
         if result.code:
@@ -76,7 +76,7 @@ def source_of(host: str, folder: str) -> str:
     folder = folder.removeprefix("~/").rstrip("/") or FOLDER
     if not PATH.fullmatch(folder) or "~" in folder[:1]:
         raise UserError(
-            f"fetch: FOLDER={folder!r} is not a path that goes through two shells; take letters, digits, . _ - / "
+            f"fetch: FOLDER={folder!r} cannot pass through two shells; use letters, digits, . _ - / "
             "alone, from the home folder or from /"
         )
     return f"{host}:{folder}/out/films"
@@ -93,7 +93,7 @@ def _locked(folder: Path) -> Iterator[int]:
     try:
         while True:
             handle = _lock_of(folder)
-            if locks.try_lock(handle) and os.fstat(handle).st_nlink:
+            if files.try_lock(handle) and os.fstat(handle).st_nlink:
                 yield handle
                 return
             os.close(handle)
@@ -142,7 +142,7 @@ def _reason(result: Transfer, host: str, source: str, kept: int) -> str:
     if "No space left" in said or "File too large" in said:
         return f"fetch: {last}; free some disk space or set MBSD_OUT to another folder. {_kept(kept)}"
     if "change_dir" in said and "No such file" in said:
-        return f"fetch: {source} is not there; make fetch HOST={host} FOLDER=<the project's folder on that machine>"
+        return f"fetch: {source} does not exist; make fetch HOST={host} FOLDER=<the project's folder on that machine>"
     if not kept and (result.code == 255 or "(0 bytes received so far)" in said):
         return f"fetch: {host} cannot be reached: {last}; try ssh {host}"
     return f"fetch: the transfer ended early: {last}. {_kept(kept)}"

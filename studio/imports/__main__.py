@@ -14,9 +14,8 @@ from shared.stage.errors import UserError
 from shared.stage.face import to_run
 from shared.stage.files import write_bytes
 from shared.stage.paths import NAME, shown_file
-from studio.imports.reading import FORMATS, read
+from studio.imports.reading import FORMATS, difference, read, try_out
 from studio.imports.sketch import Sketch
-from studio.imports.trial import difference, try_out
 from studio.imports.writing import mechanism_py
 
 

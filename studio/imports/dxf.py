@@ -118,7 +118,7 @@ def _drawn(text: str) -> _Drawing:
             elif corners:
                 drawn.lines.append(_Line(corners, layer))
     except Exception as error:  # a parser of others, which raises whatever a broken file brings about
-        raise UserError(f"this is no DXF that can be read ({type(error).__name__}: {error})") from error
+        raise UserError(f"this is not a readable DXF ({type(error).__name__}: {error})") from error
     return drawn
 
 

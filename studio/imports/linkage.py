@@ -12,8 +12,7 @@ from html import unescape
 from typing import Any
 
 from shared.stage.errors import UserError
-from studio.imports.limits import check_count, check_depth, check_length
-from studio.imports.names import Titles
+from studio.imports.limits import Titles, check_count, check_depth, check_length
 from studio.imports.sketch import GROUND, Gears, Place, Ram, Sketch, Slide, Weld
 from studio.imports.sketch import Motor as Drive
 

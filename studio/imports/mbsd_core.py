@@ -60,7 +60,7 @@ def _read(data: dict[str, Any], name: str) -> Sketch:
         raise UserError(f"it has {len(bodies)} bodies; a mechanism has 2 to {MOST_BODIES}, the ground among them")
     words = [GROUND, *(str(body["name"]) or f"body_{k}" for k, body in enumerate(bodies[1:], 1))]
     if len(set(words)) < len(words):
-        raise UserError("two of its bodies have one name")
+        raise UserError("two of its bodies have the same name")
     sketch = Sketch(name.rsplit(".", 1)[0], "mbsd-core", gravity=(float(data["gravity"][0]), float(data["gravity"][1])))
     motors = []
     for given in data.get("user_constraints", []):
@@ -71,14 +71,14 @@ def _read(data: dict[str, Any], name: str) -> Sketch:
             if "coordinate" in given:
                 driven = f" of {words[_body(given['body'], words)] or 'the ground'} ({given['coordinate']})"
             sketch.left_out.append(
-                f"constraint {given.get('index', '?')}{driven}: its function is Python, which the file has not"
+                f"constraint {given.get('index', '?')}{driven}: its function is Python, which is missing in the file"
             )
     pins, slides = data["joints"]["revolute"], data["joints"]["prismatic"]
     check_count([*pins, *slides, *motors], "joints and motors")
     counts = {"bodies": len(bodies), "revolute_joints": len(pins), "prismatic_joints": len(slides)}
     for key, number in counts.items():
         if data.get("counts", {}).get(key, number) != number:
-            raise UserError(f"its counts say {data['counts'][key]} {key.replace('_', ' ')}, and it has {number}")
+            raise UserError(f"its counts say {data['counts'][key]} {key.replace('_', ' ')}, and there are {number}")
     sketch.freedom = 3 * (len(bodies) - 1) - 2 * (len(pins) + len(slides))
     for joint in (*pins, *slides):
         for key in ("body_i", "body_j") if "body_i" in joint else ("rail_body", "slider_body"):
@@ -146,7 +146,7 @@ def _closed(count: int, pins: Any, slides: Any, turned: list[tuple[int, float]])
             return np.concatenate([np.zeros((1, 3)), q.reshape(-1, 3)])
         start = random.standard_normal(len(start)) * np.tile([size, size, math.pi], count - 1)
     raise UserError(
-        f"no pose was seen in {tries} tries in which its joints close; are the lengths those of the program?"
+        f"no pose was found in {tries} tries in which its joints close; are the lengths those of the program?"
     )
 
 

@@ -123,7 +123,7 @@ def query_of(text: str) -> str:
     try:
         query = urlparse(text.strip()).query
     except ValueError as error:
-        raise UserError(f"{text.strip()[:60]!r} is no address ({error})") from error
+        raise UserError(f"{text.strip()[:60]!r} is not an address ({error})") from error
     return unquote(query or text.strip()).removeprefix("mech=").removeprefix("?")
 
 
@@ -180,10 +180,10 @@ def _checked(query: str) -> str:
     body, mark, digest = query.rpartition("*")
     if mark and re.fullmatch(r"[0-9A-Za-z]{6}", digest):
         if _digest(body) != digest:
-            raise UserError("its digest does not fit: it was changed or cut off; copy all of it, in quotes")
+            raise UserError("its digest is wrong: it was changed or cut off; copy all of it, in quotes")
         query = body
     if len(query) < 2 or CHECKS[(len(query) - 1) % len(CHECKS)] != query[-1]:
-        raise UserError("its check does not fit: it was changed or cut off; copy all of it, in quotes")
+        raise UserError("its checksum is wrong: it was changed or cut off; copy all of it, in quotes")
     return query[:-1]
 
 
@@ -219,7 +219,7 @@ def _until_empty(sections: list[str]) -> tuple[list[str], list[str]]:
 def _joint(text: str) -> JointRecord:
     cells = text.split(",")
     if len(cells) < 5 or len(cells[0]) < 2:
-        raise UserError(f"{text[:40]!r} is no joint")
+        raise UserError(f"{text[:40]!r} is not a joint")
     flags = _whole(cells[0][0], signed=False)
     cells += [""] * (11 - len(cells))
     return JointRecord(
@@ -244,7 +244,7 @@ def _joint(text: str) -> JointRecord:
 def _link(text: str) -> LinkRecord:
     cells = text.split(",")
     if len(cells) < 8 or len(cells[0]) < 3 or cells[0][0] not in ROOTS + PARTS or cells[0][1] not in "RP":
-        raise UserError(f"{text[:40]!r} is no link")
+        raise UserError(f"{text[:40]!r} is not a link")
     kind, members = cells[0][0], cells[7:]
     end = members.index("") if "" in members else len(members)
     return LinkRecord(
@@ -266,7 +266,7 @@ def _link(text: str) -> LinkRecord:
 def _force(text: str) -> ForceRecord:
     cells = text.split(",")
     if len(cells) < 8 or len(cells[0]) < 2:
-        raise UserError(f"{text[:40]!r} is no force")
+        raise UserError(f"{text[:40]!r} is not a force")
     flags = _whole(cells[0][0], signed=False)
     x0, y0, x1, y1, magnitude = (_decimal(cell) for cell in cells[3:8])
     return ForceRecord(
@@ -285,7 +285,7 @@ def _take_in(read: Records, mark: str) -> None:
         return
     things, numbers = (read.joints, JOINT_NUMBERS) if mark[1] == "J" else (read.links, LINK_NUMBERS)
     if name not in things or not number.isascii() or not number.isdigit() or int(number) >= len(numbers):
-        raise UserError(f"{mark[:40]!r} corrects no number that is there")
+        raise UserError(f"{mark[:40]!r} corrects a number that does not exist")
     setattr(things[name], numbers[int(number)], float(value))
 
 
@@ -296,23 +296,23 @@ def _check_references(read: Records) -> None:
             raise UserError(f"link {link.id} has no joints")
         for joint in link.joints:
             if joint not in read.joints:
-                raise UserError(f"link {link.id} has a joint {joint}, which is not there")
+                raise UserError(f"link {link.id} has a joint {joint}, which does not exist")
         for part in link.parts:
             if part not in read.links:
-                raise UserError(f"link {link.id} has a part {part}, which is not there")
+                raise UserError(f"link {link.id} has a part {part}, which does not exist")
     for force in read.forces:
         if force.link not in read.links:
-            raise UserError(f"force {force.id} is on link {force.link}, which is not there")
+            raise UserError(f"force {force.id} is on link {force.link}, which does not exist")
     for joint in read.joints.values():
         if joint.carrier and (joint.carrier not in read.links or not all(end in read.joints for end in joint.slot)):
-            raise UserError(f"slider {joint.id} has a slot in {joint.carrier}, which is not there")
+            raise UserError(f"slider {joint.id} has a slot in {joint.carrier}, which does not exist")
 
 
 def _whole(text: str, signed: bool = True) -> int:
     """Return a whole number; a leading 0 is a minus."""
     digits, sign = (text[1:], -1) if signed and text[:1] == "0" else (text, 1)
     if not text or len(digits) > MOST_DIGITS or any(digit not in DIGITS for digit in digits):
-        raise UserError(f"{text[:40]!r} is no number")
+        raise UserError(f"{text[:40]!r} is not a number")
     value = 0
     for digit in digits:
         value = value * len(DIGITS) + DIGITS.index(digit)

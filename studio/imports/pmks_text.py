@@ -123,7 +123,7 @@ def _of_lines(text: str) -> list[_Joint]:
             continue
         joint = _joint_of(line)
         if joint is None:
-            raise UserError(f"line {number} is no joint of PMKS ({line.strip()[:60]!r}); link,link,R,x,y is one")
+            raise UserError(f"line {number} is not a joint of PMKS ({line.strip()[:60]!r}); link,link,R,x,y is one")
         joints.append(joint)
     return joints
 

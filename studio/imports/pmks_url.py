@@ -13,7 +13,7 @@ import re
 from urllib.parse import urlparse
 
 from shared.stage.errors import UserError
-from studio.imports.names import Titles
+from studio.imports.limits import Titles
 from studio.imports.pmks_records import PARTS, ROOTS, JointRecord, LinkRecord, Records, query_of, records_of
 from studio.imports.sketch import GROUND, Link, Load, Motor, Place, Push, Sketch, Slide, Weld
 

@@ -80,7 +80,7 @@ def _carriers(data: dict[str, Any], joints: dict[str, Any], bodies: list[str]) -
     for link, body in zip(data["links"], bodies, strict=True):
         for joint in link["joints"]:
             if str(joint) not in on:
-                raise UserError(f"link '{body}' has a joint '{joint}', which the file has not")
+                raise UserError(f"link '{body}' has a joint '{joint}', which is missing in the file")
             on[str(joint)] += [GROUND, body] if joint == link.get("motor_joint") else [body]
     return {key: list(dict.fromkeys(links)) for key, links in on.items()}
 

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 
+from mbsd import Mechanism, MechanismError
 from shared.stage.errors import UserError
 from studio.imports import asmt, dxf, linkage, mbsd_core, pmks_text, pmks_url, pylinkage
-from studio.imports.limits import read_bytes
-from studio.imports.names import printable
+from studio.imports.limits import printable, read_bytes
 from studio.imports.sketch import Sketch
 
 FORMATS: dict[str, tuple[Callable[[str], bool], Callable[[str, str], Sketch]]] = {
@@ -64,15 +65,64 @@ def read_text(text: str, name: str) -> Sketch:
             ) from error
         sketch.left_out = [printable(words) for words in sketch.left_out]
         return sketch
-    raise UserError(f"{name} is of no program that is known here; known are: {', '.join(FORMATS)}")
+    raise UserError(f"{name} is not a file of a known program; known are: {', '.join(FORMATS)}")
 
 
 def _decoded(content: bytes, file: Path) -> str:
     if b"\0" in content:
-        raise UserError(f"{printable(str(file))} is no text")
+        raise UserError(f"{printable(str(file))} is not text")
     for encoding in ENCODINGS:
         try:
             return content.decode(encoding)
         except UnicodeDecodeError:
             continue
-    raise UserError(f"{printable(str(file))} is no text")
+    raise UserError(f"{printable(str(file))} is not text")
+
+
+# Trial of a written mechanism.py: loaded and built in memory, and compared with its source.
+#
+# It takes place before the file is saved.
+#
+# So no file that cannot be loaded is ever in a user's folder, where it would be in the way of the next import.
+
+
+def try_out(text: str, name: str) -> Mechanism:
+    """Return the mechanism that a mechanism.py builds.
+
+    Raises UserError if it cannot be saved, loaded or built.
+
+    A reason that is no MechanismError is a fault of the importer, and the message says so.
+    """
+    module = ModuleType(name)
+    try:
+        exec(compile(text.encode(), f"{name}/mechanism.py", "exec", dont_inherit=True), module.__dict__)
+        return module.build(module.Params())
+    except MechanismError as error:
+        raise UserError(f"the file makes no valid mechanism: {error}") from error
+    except Exception as error:
+        cause = f"{type(error).__name__}: {printable(str(error))[:200]}"
+        raise UserError(
+            f"the written mechanism.py cannot be loaded ({cause}); that is a fault of this importer: please report it"
+        ) from error
+
+
+def difference(sketch: Sketch, m: Mechanism) -> str:
+    """Return how the degrees of freedom differ from those of the file; "" if they do not.
+
+    Joints that repeat each other leave more than a count of joints tells, so that more is no difference.
+    """
+    try:
+        freedom = m.mobility().dof
+    except MechanismError:  # which the look at the model names
+        return ""
+    if sketch.freedom is not None and not freedom >= sketch.freedom == sketch.counted_freedom():
+        return (
+            f"the degrees of freedom differ: {sketch.freedom} in the file, {freedom} in this mechanism; "
+            "it moves differently until you add what was left out"
+        )
+    if sketch.inputs and sketch.inputs != freedom:
+        return (
+            f"the inputs of the file ({sketch.inputs}) move all of it there, and this mechanism has {freedom} "
+            "degrees of freedom: something was left out or misread, or is loose in the file"
+        )
+    return ""

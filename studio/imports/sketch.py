@@ -204,14 +204,16 @@ class Sketch:
         for thing in (*self.joints, *self.motors, *self.pushes, *self.rams):
             for link in (thing.first, thing.second):
                 if link != GROUND and link not in self.links:
-                    raise UserError(f"{type(thing).__name__.lower()} '{thing.name}' is on '{link}', which is no link")
+                    raise UserError(
+                        f"{type(thing).__name__.lower()} '{thing.name}' is on '{link}', which is not a link"
+                    )
             if thing.first == thing.second:
                 raise UserError(f"{type(thing).__name__.lower()} '{thing.name}' is on one link alone")
         if any(motor.second == GROUND for motor in self.motors):
             raise UserError("a motor turns the ground")
         for link in (*(link for link, _ in self.traces.values()), *(load.link for load in self.loads)):
             if link not in self.links:
-                raise UserError(f"a traced point or a force is on '{link}', which is no link")
+                raise UserError(f"a traced point or a force is on '{link}', which is not a link")
         counted = self.counted_freedom()
         if self.freedom is not None and counted != self.freedom and not self.left_out:
             raise UserError(

@@ -6,7 +6,7 @@ import ast
 import json
 import math
 
-from studio.imports.names import Names, Titles, printable
+from studio.imports.limits import Names, Titles, printable
 from studio.imports.sketch import GROUND, Gears, Link, Load, Motor, Pin, Place, Push, Ram, Sketch, Slide, Weld
 
 NEAR = 1e-9

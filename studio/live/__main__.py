@@ -28,7 +28,7 @@ def main() -> int:
     arguments = parser.parse_args()
     name = known_name(arguments.name)
     if not arguments.limit > 0:
-        raise UserError(f"live: --limit {arguments.limit:g} is no time; give seconds above 0")
+        raise UserError(f"live: --limit {arguments.limit:g} is not a time; give seconds above 0")
     with bound(arguments.port) as listener:
         try:
             asyncio.run(_serve(name, listener, arguments))

@@ -10,9 +10,9 @@ from typing import Any
 
 from msgspec import to_builtins
 
+from studio.live.messages import Fit as Wanted
 from studio.live.processes.children import Child
 from studio.live.processes.nursery import Nursery
-from studio.live.wishes import Fit as Wanted
 
 Tell = Callable[[dict[str, Any]], None]
 

@@ -15,15 +15,15 @@ from msgspec import to_builtins
 
 from shared.stage.errors import UserError
 from shared.stage.paths import mechanism_folder
-from studio.live import wishes
+from studio.live import messages
 from studio.live.board import Board, Push
 from studio.live.fits import Fit
+from studio.live.messages import Drag, Set, Wish, Write
 from studio.live.processes.children import Child
 from studio.live.processes.nursery import Nursery
 from studio.live.processes.stages import Stages
 from studio.live.watching import Watch
-from studio.live.wishes import Drag, Set, Wish, Write
-from studio.live.writing.writer import Writer, Written
+from studio.live.writing import Writer, Written
 
 
 class Session:
@@ -125,19 +125,19 @@ class Session:
                 self._solve({**to_builtins(wish), "values": self.history.now})
             case Write():
                 self._write(wish)
-            case wishes.Fit():
-                wishes.known(wish.vary or (), self.board.numbers)
+            case messages.Fit():
+                messages.known(wish.vary or (), self.board.numbers)
                 self.fit.begin(wish, self.history.now)
-            case wishes.Undo():
+            case messages.Undo():
                 self._undo()
-            case wishes.Redo():
+            case messages.Redo():
                 self._solve({"do": "set", "values": self.history.redo(), "final": True})
                 self.board.tell_values()
-            case wishes.Cancel():
+            case messages.Cancel():
                 self.fit.cancel()
 
     def _set(self, wish: Set) -> None:
-        wishes.known(wish.values, self.board.numbers)
+        messages.known(wish.values, self.board.numbers)
         values = self.history.now | wish.values
         if wish.final:
             self.history.add(values)
@@ -160,8 +160,8 @@ class Session:
 
     def _write(self, wish: Write) -> None:
         if self.board.error is not None:
-            raise UserError("mechanism.py has an error, so nothing is written into it; cure it first")
-        wishes.known(wish.names or (), self.board.numbers)
+            raise UserError("mechanism.py has an error, so nothing is written into it; fix it first")
+        messages.known(wish.names or (), self.board.numbers)
         now = self.history.now
         values = {name: now[name] for name in (now if wish.names is None else wish.names) if name in now}
         if not values:

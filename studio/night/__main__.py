@@ -30,7 +30,7 @@ def main() -> int | None:
     fresh.add_argument("--spectra", default="")
     fresh.add_argument("names", nargs="*")
     commands.add_parser("status", help="what every film is at")
-    commands.add_parser("stop", help="end the runs after the frame in flight")
+    commands.add_parser("stop", help="end the runs after the current frame")
     arguments = parser.parse_args()
     if arguments.command == "fresh":
         from render.presets import preset_named
@@ -39,13 +39,13 @@ def main() -> int | None:
         preset = preset_named(arguments.preset)
         return freshness.tell(arguments.names, preset, arguments.show, arguments.spectra, arguments.sound)
     if arguments.command == "status":
-        from studio.night.commands import status
+        from studio.night import status
 
         return status.tell()
     if arguments.command == "stop":
-        from studio.night.commands import stopping
+        from studio.night import status
 
-        return stopping.stop()
+        return status.stop()
     return _work(arguments.command, _options(arguments))
 
 
@@ -54,7 +54,7 @@ def _work(command: str, asked: Options) -> int:
         from studio.night import night
 
         return night.run(asked)
-    from studio.night.commands import background
+    from studio.night import background
 
     return background.start(asked)
 

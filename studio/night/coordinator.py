@@ -13,14 +13,11 @@ from contextlib import suppress
 from shared.cluster.address import address
 from shared.stage.console import duration
 from shared.stage.errors import BUSY, UserError
-from studio.night import watch
-from studio.night.files.log import Log
-from studio.night.files.runs import Claims, Run
-from studio.night.plan.board import Board
+from studio.night.books import Books
 from studio.night.plan.options import Options
-from studio.night.plan.steps import FILM, STEPS, Step, command
-from studio.night.process import Process
-from studio.night.progress.books import Books
+from studio.night.plan.steps import FILM, STEPS, Board, Step, command
+from studio.night.process import Process, ending, is_tried_again, limit
+from studio.night.runs import Claims, Log, Run
 
 TICK = 0.1
 """Seconds between two looks at the processes."""
@@ -142,10 +139,10 @@ class Coordinator:
                 self._ended(process)
             elif not process.hung:
                 making = renders and not self.books.is_complete(process.name)
-                longest = watch.limit(making, self.books.each(process.name), process.signs)
+                longest = limit(making, self.books.each(process.name), process.signs)
                 if process.silence > longest:
                     process.hung = True
-                    self.log.warn(f"{process.name}: {process.step} gave no sign of life for {duration(longest)}")
+                    self.log.warn(f"{process.name}: {process.step} was silent for {duration(longest)}")
                     self._kill(process)
         self.books.write_if_due()
 
@@ -168,8 +165,8 @@ class Coordinator:
             self.board.wait(name, step)
             self.books.elsewhere(name, "another process renders it")
         else:
-            why = watch.ending(process)
-            again = watch.is_tried_again(process, self._tries[name, step])
+            why = ending(process)
+            again = is_tried_again(process, self._tries[name, step])
             self.books.error(name, f"{step}: {why}")
             if again:
                 self.log.warn(f"{name}: {step}: {why}; it is started again")
@@ -181,7 +178,7 @@ class Coordinator:
 
     def _stop_after_frame(self) -> None:
         """End the steps beside the render at once, the render after its next picture."""
-        self.log.say("asked to stop; it ends after the frame in flight")
+        self.log.say("stop requested; the run ends after the current frame")
         for process in self._others():
             process.end()
         while self.running:

@@ -11,12 +11,11 @@ from shared.stage.errors import UserError
 from shared.stage.face import to_run
 from shared.stage.paths import NAME_RULE, ROOT
 from studio.night.coordinator import Coordinator
-from studio.night.files.log import Log
-from studio.night.files.runs import Run, taken
-from studio.night.plan.board import Board
+from studio.night.forecast import refuse_before_start
 from studio.night.plan.freshness import fresh_steps
 from studio.night.plan.options import Options
-from studio.night.progress.disk import refuse_before_start
+from studio.night.plan.steps import Board
+from studio.night.runs import Log, Run, taken
 
 STOPPED = 130
 """Exit code of a run that was asked to stop, as after Ctrl-C."""
@@ -61,11 +60,9 @@ def _last_words(
     left = len(asked.names) - done - len(failed)
     words = f"{done} done" + (f", {left} not finished" if left else "")
     if bad:
-        log.fail(
-            f"{words}, failed: {' '.join(bad)}; their errors stand above, {to_run('status')} tells the last of each"
-        )
+        log.fail(f"{words}, failed: {' '.join(bad)}; their errors are above, {to_run('status')} shows the last of each")
     if not finished:
-        log.say(f"stopped as asked after {duration(seconds)}: {words}; the same command goes on from here")
+        log.say(f"stopped after {duration(seconds)}: {words}; the same command goes on from here")
         return STOPPED
     if not bad:
         log.say(f"{words} in {duration(seconds)}")

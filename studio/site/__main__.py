@@ -6,7 +6,7 @@ import argparse
 
 from shared.stage.console import run_cli
 from shared.stage.paths import all_mechanisms, known_name
-from studio.site import making
+from studio.site import build
 
 
 def main() -> int:
@@ -17,7 +17,7 @@ def main() -> int:
     parser.add_argument("--only", default="", help="these machines: four_bar,pendulum; all if not given")
     asked = parser.parse_args()
     names = [known_name(name) for name in asked.only.split(",")] if asked.only else all_mechanisms()
-    return making.run(names)
+    return build.run(names)
 
 
 if __name__ == "__main__":

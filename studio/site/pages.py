@@ -2,13 +2,76 @@
 
 from __future__ import annotations
 
+import base64
 import re
+import subprocess
+import sys
 from collections.abc import Sequence
 from html import escape
+from pathlib import Path
 
+from render.frames.encode import run_ffmpeg
+from render.frames.story.stage import film_of as story_of
+from render.presets import PRESETS
+from render.view.bundle import bundle, sources_key
+from render.view.document import document, encode, sketch
+from render.view.payload import read_payload
 from shared.contract.quantity import counted
+from shared.stage.console import warn
+from shared.stage.files import sources_hash, whole_file, write_bytes
+from shared.stage.paths import ROOT, Out, mechanism_file
+from shared.stage.stages import Stage, key_of, versions
 from studio.site.entries import Entry
-from studio.site.loops import HEIGHT, WIDTH
+
+# Short silent film on the wall: from the mechanism's film, else from its moving skeleton.
+
+
+WIDTH, HEIGHT = 480, 270
+SECONDS = 12.0
+LOOP_PATIENCE = 600.0
+"""Seconds in which ffmpeg has to make a loop."""
+
+
+def films_of(out: Out) -> list[Path]:
+    """Return the existing loops, the finest preset first."""
+    return [path for preset in reversed(list(PRESETS)) if (path := out.film(preset)).is_file()]
+
+
+def page_films(out: Out) -> list[Path]:
+    """Return films for a mechanism's own page, the best first: of each preset the story, the loop."""
+    films = (path for preset in reversed(list(PRESETS)) for path in (story_of(out, preset), out.film(preset)))
+    return [path for path in films if path.is_file()]
+
+
+def write_loop(film: Path, target: Path) -> None:
+    """Write a film in the size of a tile, without sound, cut after SECONDS.
+
+    The same film gives the same bytes.
+
+    Raises UserError.
+    """
+    fitted = f"scale={WIDTH}:{HEIGHT}:force_original_aspect_ratio=increase,crop={WIDTH}:{HEIGHT},format=yuv420p"
+    options = (
+        *("-t", f"{SECONDS:g}", "-an", "-sn", "-vf", fitted, "-r", "30"),
+        *("-c:v", "libx264", "-preset", "slow", "-crf", "30", "-threads", "1", "-movflags", "+faststart"),
+        *("-map_metadata", "-1", "-map_chapters", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-f", "mp4"),
+    )
+    _run(film, target, options)
+
+
+def write_still(film: Path, target: Path) -> None:
+    """Write a picture of a film after a third of a second, as a JPEG twice a tile's size.
+
+    Raises UserError.
+    """
+    fitted = f"scale={2 * WIDTH}:{2 * HEIGHT}:force_original_aspect_ratio=increase,crop={2 * WIDTH}:{2 * HEIGHT}"
+    _run(film, target, ("-ss", "0.3", "-frames:v", "1", "-vf", fitted, "-q:v", "4", "-f", "mjpeg"))
+
+
+def _run(film: Path, target: Path, options: tuple[str, ...]) -> None:
+    with whole_file(target) as part:
+        run_ffmpeg(film.name, "-i", str(film), *options, str(part), patience=LOOP_PATIENCE)
+
 
 HEAD = """<!doctype html>
 <html lang="en">
@@ -135,3 +198,60 @@ def _tile(entry: Entry, place: int, root: str = "") -> str:
 
 def _size(size: int) -> str:
     return f"{size / KILO**2:.1f} MB" if size >= KILO**2 else f"{max(1, round(size / KILO))} kB"
+
+
+# Page of a mechanism on the site: the page of ``mbsd view`` with designs for its sliders.
+
+
+SOURCES = [ROOT / "studio" / name for name in ("site/designs", "site/pages.py", "live/child", "live/numbers.py")]
+DESIGNS_PATIENCE = 900.0
+"""Seconds in which the designs of a machine have to be there."""
+
+
+def write_machine_page(name: str, target: Path) -> bool:
+    """Write the page unless it is current; return True if it has sliders.
+
+    Raises UserError.
+    """
+    out = Out(name)
+    designs = _designs(name)
+    table = designs.read_bytes() if designs.is_file() else b""
+    key = key_of(out.view, designs if table else "none", sources_key(), sources_hash(*SOURCES))
+    stage = Stage(out, "site-machine", key, [target])
+    if not stage.is_fresh():
+        payload = read_payload(out)
+        more = _script(table) if table else ""
+        page = document(payload["title"], encode(payload), bundle(), more, sketch=sketch(payload["skeleton"]))
+        write_bytes(target, page)
+        stage.record()
+    return bool(table)
+
+
+def _script(table: bytes) -> str:
+    return f'<script type="text/plain" id="mbsd-designs">{base64.b64encode(table).decode()}</script>\n'
+
+
+def _designs(name: str) -> Path:
+    """Return the table of designs, built in a process of its own, since mechanism.py runs there.
+
+    Empty where no number can be moved; missing where the process failed, which is reported and tried again.
+    """
+    out = Out(name)
+    path = out.folder / "designs.bin"
+    read = out.motion, out.skeleton, mechanism_file(name)
+    key = key_of(*read, sources_hash(*SOURCES, ROOT / "render" / "view"), versions("numpy"))
+    stage = Stage(out, "designs", key, [path])
+    if stage.is_fresh():
+        return path
+    words = [sys.executable, "-m", "studio.site.designs", name]
+    try:
+        done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False, timeout=DESIGNS_PATIENCE)
+        said = (done.stderr.strip() or f"exit code {done.returncode}").splitlines()[-1] if done.returncode else ""
+    except subprocess.TimeoutExpired:
+        said = f"it did not end within {DESIGNS_PATIENCE:.0f} s"
+    if said:
+        warn("site", f"{name}: its page has no sliders: {said}")
+        path.unlink(missing_ok=True)
+    else:
+        stage.record()
+    return path

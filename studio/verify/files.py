@@ -2,24 +2,42 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import msgspec
 
-from studio.verify.finding import Finding
+# Finding of a comparison: the same, different, made from other inputs, or missing.
+
+
+Verdict = Literal["same", "differs", "outdated", "missing"]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One file, frame or film. ``outdated``: its inputs have changed since, so nothing follows."""
+
+    what: str
+    verdict: Verdict
+    detail: str = ""
+
+    def __str__(self) -> str:
+        word = {"outdated": "made from other inputs", "missing": "not compared"}.get(self.verdict, self.verdict)
+        return f"{self.what}: {word}{', ' * bool(self.detail)}{self.detail}"
+
 
 LONGEST = 60
 """Characters of a value in a message."""
 
 
-def compared(what: str, old: Path, new: Path) -> Finding:
+def compare(what: str, old: Path, new: Path) -> Finding:
     """Return the comparison of the existing file with the one built again."""
     if not new.is_file():
-        return Finding(what, "differs", "it was not made again")
+        return Finding(what, "differs", "it was not rebuilt")
     if not old.is_file():
-        return Finding(what, "differs", "it is not there, but was made again")
+        return Finding(what, "differs", "it does not exist, but was rebuilt")
     ours, other = old.read_bytes(), new.read_bytes()
     if ours == other:
         return Finding(what, "same", f"{len(ours)} bytes")
@@ -30,7 +48,7 @@ def compared(what: str, old: Path, new: Path) -> Finding:
 
 def _first_byte(ours: bytes, other: bytes) -> str:
     place = next((k for k, (a, b) in enumerate(zip(ours, other, strict=False)) if a != b), min(len(ours), len(other)))
-    return f"from byte {place} on; {len(ours)} bytes, made again {len(other)}"
+    return f"from byte {place} on; {len(ours)} bytes, rebuilt {len(other)}"
 
 
 def _of_json(what: str, ours: bytes, other: bytes) -> Finding:
@@ -41,7 +59,7 @@ def _of_json(what: str, ours: bytes, other: bytes) -> Finding:
     if _inputs(first) != _inputs(second):
         return Finding(what, "outdated", "something that it follows from has changed since")
     where = _first_field(first, second, "")
-    return Finding(what, "differs", f"at {where[0]}: {where[1]}, made again {where[2]}" if where else "in its layout")
+    return Finding(what, "differs", f"at {where[0]}: {where[1]}, rebuilt {where[2]}" if where else "in its layout")
 
 
 def _inputs(document: Any) -> Any:

@@ -10,7 +10,7 @@ from shared.stage.errors import UserError
 from shared.stage.paths import Out
 from shared.stage.stages import Stage, outdated_by
 from studio.verify import files
-from studio.verify.finding import Finding
+from studio.verify.files import Finding
 
 Again = Callable[..., None]
 """Runs a stage with its results in scratch: module, stage, name, options."""
@@ -33,7 +33,7 @@ def of_print(out: Out, scratch: Path, again: Again) -> list[Finding]:
     again("mechanisms", "print", out.name, f"--bed={notes['bed']}", f"--gap={notes['gap']}")
     here, there = out.print_folder, scratch / "print"
     names = sorted({path.name for folder in (here, there) for path in folder.iterdir() if path.is_file()})
-    findings = [files.compared(name, here / name, there / name) for name in names if not name.startswith(".")]
+    findings = [files.compare(name, here / name, there / name) for name in names if not name.startswith(".")]
     wrong = [finding for finding in findings if finding.verdict != "same"]
     if wrong:
         said = f"{len(wrong)} of {counted(len(findings), 'file')}, such as {wrong[0].what} {wrong[0].detail}"
@@ -73,5 +73,5 @@ def _of_export(
         else:
             again("render", "usd", out.name, f"--format={form}")
     except UserError as error:
-        return Finding(what, "differs", f"it cannot be made again: {error}")
-    return files.compared(what, file, scratch / "export" / file.name)
+        return Finding(what, "differs", f"it cannot be rebuilt: {error}")
+    return files.compare(what, file, scratch / "export" / file.name)

@@ -24,8 +24,8 @@ from shared.stage.console import fail, say
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
 from shared.stage.paths import ROOT, Out, out_root
-from studio.verify import again, files, film, pictures, products
-from studio.verify.finding import Finding
+from studio.verify import again, files, film, products
+from studio.verify.files import Finding
 
 
 def run(name: str, preset: Preset, frames: str = "", show: str = "") -> int:
@@ -37,7 +37,7 @@ def run(name: str, preset: Preset, frames: str = "", show: str = "") -> int:
     """
     out = Out(name)
     if not out.motion.is_file():
-        raise UserError(f"{out.name}: {out.motion} is not there; {to_run('run', out.name)} first")
+        raise UserError(f"{out.name}: {out.motion} does not exist; {to_run('run', out.name)} first")
     home = out_root() / ".verify"
     try:
         with scratch_folder(home) as scratch:
@@ -52,8 +52,8 @@ def run(name: str, preset: Preset, frames: str = "", show: str = "") -> int:
 
 def _compared(out: Out, preset: Preset, frames: str, show: str, scratch: Path) -> list[Finding]:
     store = FrameStore(out.frames(preset.name))
-    index = pictures.index_of(store)
-    wanted = pictures.chosen(frames, len(index.frames), out.name) if index else []  # reported before the work
+    index = film.index_of(store)
+    wanted = film.chosen(frames, len(index.frames), out.name) if index else []  # reported before the work
     root = scratch / "out"
     solids = out.parts.is_file()
     for stage in (
@@ -64,7 +64,7 @@ def _compared(out: Out, preset: Preset, frames: str, show: str, scratch: Path) -
     findings = [_of_parts(out, made)] if solids else [Finding("solids", "missing", "there are none")]
     for what, path in (("motion", out.motion), ("skeleton", out.skeleton), ("shot", out.shot)):
         if path.is_file() and (solids or path != out.shot):
-            findings.append(files.compared(f"{what} ({path.name})", path, made / path.name))
+            findings.append(files.compare(f"{what} ({path.name})", path, made / path.name))
     again_in = partial(_stage, root)
     findings += [*(products.of_print(out, made, again_in) if solids else []), *products.of_exports(out, made, again_in)]
     if index is None or not solids:
@@ -79,29 +79,29 @@ def _of_pictures(
     root, store = scratch / "out", FrameStore(out.frames(preset.name))
     _stage(root, "studio.verify.again", out.name, again.preset_words(preset), ",".join(map(str, wanted)), show)
     made = FrameStore(root / out.name / "frames" / preset.name)
-    findings = [pictures.compared(frame, index.frames[frame], store, made) for frame in wanted]
+    findings = [film.compare_frame(frame, index.frames[frame], store, made) for frame in wanted]
     there = named(out.film(preset.name), show)
     sound = wav_of(there)
     if not sound.is_file():
-        return [*findings, film.compared(there, scratch, store, index, preset)]
+        return [*findings, film.compare_film(there, scratch, store, index, preset)]
     what = f"sound ({sound.name})"
     try:
         heard = write_sound(out, preset, show, scratch / sound.name)
     except UserError as error:
-        findings.append(Finding(what, "differs", f"it cannot be made again: {error}"))
-        return [*findings, film.compared(there, scratch, store, index, preset)]
-    findings.append(files.compared(what, sound, heard))
-    return [*findings, film.compared(there, scratch, store, index, preset, heard)]
+        findings.append(Finding(what, "differs", f"it cannot be rebuilt: {error}"))
+        return [*findings, film.compare_film(there, scratch, store, index, preset)]
+    findings.append(files.compare(what, sound, heard))
+    return [*findings, film.compare_film(there, scratch, store, index, preset, heard)]
 
 
 def _of_parts(out: Out, again: Path) -> Finding:
     """Compare parts.json and all STL and STEP files; return one finding, of the first difference."""
-    described = files.compared("parts.json", out.parts, again / "parts" / "parts.json")
+    described = files.compare("parts.json", out.parts, again / "parts" / "parts.json")
     if described.verdict != "same":
         return Finding(f"solids ({described.what})", described.verdict, described.detail)
     here, there = out.parts_folder, again / "parts"
     names = sorted({path.name for folder in (here, there) for path in folder.glob("*.st[el]*")})
-    findings = [files.compared(name, here / name, there / name) for name in names]
+    findings = [files.compare(name, here / name, there / name) for name in names]
     wrong = [finding for finding in findings if finding.verdict != "same"]
     if wrong:
         detail = f"{len(wrong)} of {counted(len(findings), 'file')}, such as {wrong[0].what} {wrong[0].detail}"
@@ -114,7 +114,7 @@ def _stage(root: Path, module: str, *arguments: str) -> None:
     command = [sys.executable, "-m", module, *arguments]
     done = subprocess.run(command, cwd=ROOT, env=os.environ | {"MBSD_OUT": str(root)})
     if done.returncode:
-        raise UserError(f"{' '.join(command[2:])}: ended with code {done.returncode}; its error stands above")
+        raise UserError(f"{' '.join(command[2:])}: ended with code {done.returncode}; its error is above")
 
 
 def _complain(_: str, text: str) -> None:
@@ -133,7 +133,3 @@ def _sum(name: str, findings: list[Finding]) -> int:
         words.append(f"{counts['differs']} different")
     say("verify", f"{name}: {', '.join(words)}")
     return int(bool(counts["differs"] or counts["outdated"]))
-
-
-def _hyphens(name: str) -> str:
-    return name.replace("_", "-")

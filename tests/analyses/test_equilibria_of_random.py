@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mbsd import EquilibriumError, Mechanism
-from tools.models.random_linkages import linkage
+from tools.random_mechanisms.linkages import linkage
 
 
 def _loose_chain(seed: int, held: bool) -> Mechanism:

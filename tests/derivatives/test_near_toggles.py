@@ -68,3 +68,23 @@ def test_masses_too_far_apart_are_refused_in_words() -> None:
     with pytest.raises(mbsd.ModelError, match=r"hung: derivatives of simulations where inertias of joined bodies"):
         hung(1e8).sensitivities("b.theta", "B.x", 0.2, 4)
     assert np.isfinite(hung(1e4).sensitivities("b.theta", "B.x", 0.2, 4)["b.theta"]).all()
+
+
+@pytest.mark.parametrize("speed", [0.4, 0.8])
+def test_light_links_that_whip_through_a_toggle_leave_a_flywheel_alone(speed: float) -> None:
+    def whip(rod: float = 0.45) -> mbsd.Mechanism:
+        m = mbsd.Mechanism("whip", gravity=(0.0, -9.81))
+        crank, link = m.body("crank", 1.4, (0.13, 0.02), 0.014), m.body("rod", rod, (0.32, -0.07), 0.06)
+        wheel = m.body("flywheel", 5e5, (0.2, 0.0), 3.5e4)
+        m.revolute("O", m.ground.at(0.432, -0.229), crank.origin)
+        m.revolute("A", crank.at(0.2926, 0.0), link.origin)
+        m.revolute("B", link.at(0.7406, 0.0), wheel.origin)
+        m.revolute("C", m.ground.at(0.5724, 0.4684), wheel.at(0.5834, 0.0))
+        m.start_near(crank=(0.432, -0.229, 124.47), rod=(0.266, 0.0119, 4.97), flywheel=(1.004, 0.076, 137.7))
+        m.start_moving(flywheel=speed)
+        return m
+
+    times, step = [0.0, 0.3, 0.6], 1e-4
+    slopes = whip().sensitivities(["flywheel.theta"], ["rod.mass"], times=times, simulate=True, tolerance=1e-9)
+    ends = [whip(0.45 + h).simulate(times=times, tolerance=1e-12).body("flywheel").theta[-1] for h in (step, -step)]
+    assert slopes["flywheel.theta"][-1, 0] == pytest.approx((ends[0] - ends[1]) / (2.0 * step), rel=0.02)

@@ -10,7 +10,7 @@ from mbsd import Mechanism, ModelError, constant_rate
 from mbsd.measures import integral, largest, samples
 from mbsd.numbers.names import number_named, with_value
 from mbsd.testing.derivatives import check_derivatives
-from tools.models.random_linkages import linkage
+from tools.random_mechanisms.linkages import linkage
 
 RATE = 3.0
 

@@ -17,7 +17,8 @@ from mbsd.drawing.moving_skeleton import Moving, drawn_at, moving, resampled
 from mbsd.drawing.pose import pose_of, tracks_of
 from mbsd.drawing.skeleton import measure
 from mbsd.drawing.strokes import strokes_of
-from tools.models import guided, linkages, random_linkages
+from tools.models import guided, linkages
+from tools.random_mechanisms import linkages as random_linkages
 
 SLACK = 0.02
 """How far two curves may be apart that count as one, in units of the symbols."""

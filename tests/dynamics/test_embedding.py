@@ -19,7 +19,7 @@ from mbsd.dynamics.runs.motion import integrate
 from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.simulate import integrator_named
 from mbsd.kinematics.groups.groups import KIND
-from mbsd.kinematics.groups.registry import NAMES
+from mbsd.kinematics.groups.tables import NAMES
 from mbsd.results.solution import Solution
 from tools.models.assur_models import MODELS
 

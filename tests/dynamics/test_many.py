@@ -19,9 +19,9 @@ from mbsd.base.warning import quiet
 from mbsd.measures import final, largest, samples
 from mbsd.numbers.names import number_named, with_values
 from tests.dynamics.many_models import STEPS, door, press
+from tools.hunt.free_case import nudged
+from tools.hunt.mixed_rows import beside_single_ones, mixed_rows
 from tools.hunt.outcome import AGREED, WRONG
-from tools.hunt.solving.free_case import nudged
-from tools.hunt.solving.mixed_rows import beside_single_ones, mixed_rows
 from tools.models import assur_models, linkages
 from tools.models.stops import barrier
 

@@ -20,8 +20,7 @@ from mbsd.dynamics.simulate import request_for
 from mbsd.measures import final, first, largest, samples, smallest
 from tests.dynamics.many_models import air
 from tools.models.guided import free_geneva, loose_gears
-from tools.models.releases import sling
-from tools.models.repeated_joints import cranks
+from tools.models.releases import cranks, sling
 from tools.models.rough_contacts import ball as rough_ball
 from tools.models.rough_contacts import belt, rod
 from tools.models.sticking import (
@@ -73,7 +72,7 @@ def test_a_function_that_fails_is_a_reason() -> None:
 def test_the_interface_of_frames() -> None:
     m = swing()
     arm = m.bodies["arm"]
-    with pytest.raises(ModelError, match=r"knows no moment.*frames="):
+    with pytest.raises(ModelError, match=r"cannot take a Moment.*frames="):
         m.event("a", height)
     with pytest.raises(ModelError, match="frames are 3"):
         m.event("a", height, frames=3)  # pyright: ignore[reportArgumentType]

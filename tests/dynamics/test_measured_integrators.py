@@ -13,10 +13,19 @@ from scipy.special import ellipk
 import mbsd.dynamics.integrators
 from mbsd.dynamics.integrators.kind import INTEGRATORS
 from shared.stage.paths import ROOT
-from tools.documents.integrators.accuracy import Rung, case, cost, order
-from tools.documents.integrators.long_runs import RUNS, swing
-from tools.documents.integrators.measured import with_tables
-from tools.documents.integrators.mechanisms import AMPLITUDE, G, four_bar, pendulum
+from tools.documents.integrators import (
+    AMPLITUDE,
+    RUNS,
+    G,
+    Rung,
+    case,
+    cost,
+    four_bar,
+    order,
+    pendulum,
+    swing,
+    with_tables,
+)
 
 for _module in pkgutil.iter_modules(mbsd.dynamics.integrators.__path__):
     importlib.import_module(f"mbsd.dynamics.integrators.{_module.name}")

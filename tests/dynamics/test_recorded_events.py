@@ -8,11 +8,9 @@ import msgspec
 import pytest
 
 from mbsd import Mechanism
-from tools.numbers.events.case import Case
-from tools.numbers.events.commands import quick_cases, verdict
-from tools.numbers.events.condition import MOST
-from tools.numbers.events.loop import IN_LOOP, beside
-from tools.numbers.events.record import Record, read
+from tools.numbers.events.commands import IN_LOOP, compare, quick_cases, verdict
+from tools.numbers.events.difference import MOST
+from tools.numbers.events.record import Case, Record, read
 from tools.numbers.events.table import cases
 
 RECORDS: dict[str, Record] = read()
@@ -47,7 +45,7 @@ def test_records_are_those_of_the_runs_and_bounds_have_a_reason() -> None:
 @pytest.mark.slow
 def test_rows_of_many_move_as_recorded() -> None:
     """Steps of a fixed length end at outputs, which are others here."""
-    verdicts = list(beside(""))
+    verdicts = list(compare(""))
     assert sum(each.way.startswith(IN_LOOP) for each in verdicts) > 480
     fixed = ("alpha", "rattle", "rk4", "symplectic", "baumgarte")
     rows = [each for each in verdicts if each.way.startswith(IN_LOOP) and not each.name.endswith(fixed)]

@@ -22,11 +22,11 @@ from mbsd.numbers.names import number_named, with_values
 from mbsd.results.solution import Solution
 from mbsd.testing.kinds import force_kinds
 from tests.dynamics.many_models import air, crowded, door, pendulum, press
-from tools.hunt.solving.mixed_rows import quantity_names
-from tools.models import guided, releases, repeated_joints, rough_contacts, sticking, stops, user_events
+from tools.hunt.mixed_rows import quantity_names
+from tools.models import guided, releases, rough_contacts, sticking, stops, user_events
 from tools.models.engines import UP, petrol, slider_crank
 from tools.models.guided import coaster, loose_gears
-from tools.models.random_linkages import linkage
+from tools.random_mechanisms.linkages import linkage
 
 STEPS = 20
 STATE = ("x", "y", "theta", "vx", "vy", "omega")
@@ -243,16 +243,14 @@ EVENTS: dict[str, Case] = {
     "geneva swinging": Case(guided.swinging_geneva, 2.0, GENEVA, options={"formulation": "independent"}),
     "genevas": Case(guided.heavy_pair_of_genevas, 2.0, GENEVA, options={"formulation": "independent"}),
     "geneva in reference": Case(partial(guided.free_geneva, 6), 2.0, GENEVA, options={"formulation": "reference"}),
-    "cranks swing": Case(repeated_joints.cranks, 2.0, {"spring": dict([SPRING])}),
-    "cranks turn": Case(partial(repeated_joints.cranks, 12.0), 1.5, {"coupler": {"mass": [0.5, 1.0, 2.0]}}, 1e-8, 1e-6),
-    "cranks with stops": Case(partial(repeated_joints.cranks, stops=True), 1.5, {"spring": {"stiffness": [2.0, 9.0]}}),
-    "cranks with a motor": Case(
-        partial(repeated_joints.cranks, motor=True), 1.0, {"crank2": {"mass": [0.2, 2.0]}}, 0.0, 1e-7
-    ),
-    "cranks with friction": Case(partial(repeated_joints.dry, False), 1.5, {"spring": dict([SPRING])}),
-    "cranks that stick": Case(partial(repeated_joints.dry, True), 1.5, {"spring": dict([SPRING])}),
-    "row of cranks": Case(repeated_joints.row_of_cranks, 0.5, {"spring": dict([SPRING])}),
-    "doors": Case(repeated_joints.doors, 2.0, {"tie": dict([TIE])}),
+    "cranks swing": Case(releases.cranks, 2.0, {"spring": dict([SPRING])}),
+    "cranks turn": Case(partial(releases.cranks, 12.0), 1.5, {"coupler": {"mass": [0.5, 1.0, 2.0]}}, 1e-8, 1e-6),
+    "cranks with stops": Case(partial(releases.cranks, stops=True), 1.5, {"spring": {"stiffness": [2.0, 9.0]}}),
+    "cranks with a motor": Case(partial(releases.cranks, motor=True), 1.0, {"crank2": {"mass": [0.2, 2.0]}}, 0.0, 1e-7),
+    "cranks with friction": Case(partial(releases.dry, False), 1.5, {"spring": dict([SPRING])}),
+    "cranks that stick": Case(partial(releases.dry, True), 1.5, {"spring": dict([SPRING])}),
+    "row of cranks": Case(releases.row_of_cranks, 0.5, {"spring": dict([SPRING])}),
+    "doors": Case(releases.doors, 2.0, {"tie": dict([TIE])}),
     "bell": Case(sticking.bell, 4.0, {"bar": {"mass": [1.0, 1.5]}}),
     "slider-crank": Case(sticking.coasting_slider_crank, 0.6, {"rub": {"preload": [10.0, 12.0]}}),
     "breaks away": Case(partial(sticking.coasting_slider_crank, 0.0, 3.0), 0.3, {"slider": {"mass": [1.5, 2.0]}}),

@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
 from mbsd import AssemblyError, InitialConditionWarning, Mechanism, MobilityError, ModelError, constant_rate, harmonic
-from mbsd.base.kept import Kept
+from mbsd.base.running import Kept
 from mbsd.compiling.jit import OFTEN
 from mbsd.dynamics.prepare import prepare
 from mbsd.dynamics.runs.motion import integrate

@@ -108,22 +108,22 @@ rod = m.bar("rod", 0.3, mass=0.2)
 m.revolute("A", m.ground.origin, rod.start)
 m.simulate(1.0, steps=20)
 from mbsd.dynamics.independent import equations, groups
-from mbsd.kinematics.groups.carrying.cases import PerCoordinate
+from mbsd.kinematics.groups.cases import PerCoordinate
 from mbsd.kinematics.groups.kinds import rrp
 from mbsd.dynamics import formulation
 from mbsd.dynamics.reference import projection
 from mbsd.dynamics.reference.arrays import Dynamics
-from mbsd.equations import user_forces
-from mbsd.equations.constraints import relative
+from mbsd.equations.interactions.evaluation import apply
+from mbsd.equations.loads import apply_user_forces
+from mbsd.equations.relative.equation import relative_rows
 from mbsd.dynamics.integrators.dop853 import crossing
 unused = [
     formulation.derivative.kernel_of(Dynamics), projection.project, groups.bridge.kernel, equations.reduced.kernel,
     equations.write_alone,
-    rrp.solve_rrp.kernel_of(PerCoordinate).kernel, relative.rows.kernel, user_forces.apply_user_forces.kernel,
+    rrp.solve_rrp.kernel_of(PerCoordinate).kernel, relative_rows.kernel, apply_user_forces.kernel,
     crossing.crossing.kernel,
 ]
-import sys
-print([one.py_func.__name__ for one in unused if one.overloads], "mbsd.equations.interactions.apply" in sys.modules)
+print([one.py_func.__name__ for one in unused if one.overloads], apply._wrapper_address is not None)
 """
 
 

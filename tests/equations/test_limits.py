@@ -12,7 +12,7 @@ import pytest
 from mbsd import LimitError, Mechanism, ModelError, constant_rate, harmonic
 from mbsd.kinematics.limits.joints import coordinate, limits_of
 from mbsd.kinematics.march import march_along
-from mbsd.kinematics.prepare import prepare
+from mbsd.kinematics.prepared import prepare
 
 
 def _slider_crank(**limits: Any) -> Mechanism:

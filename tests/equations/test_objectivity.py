@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from mbsd.arrays.laws import compiled_laws
-from mbsd.arrays.loads import pack_loads
-from mbsd.arrays.loads_along import loads_along
+from mbsd.arrays.loads import loads_along, pack_loads
 from mbsd.model.force import ForceKind
 from mbsd.results.forces import potential_of
 from mbsd.testing import force_kinds

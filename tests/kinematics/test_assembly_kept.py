@@ -11,9 +11,9 @@ import pytest
 from mbsd import Mechanism, SingularPoseError, constant_rate, cycloidal, function, harmonic, table
 from mbsd.base.errors import BranchError, LimitError, MechanismError, ModelError
 from mbsd.kinematics.march import March, march_along
-from mbsd.kinematics.prepare import prepare
+from mbsd.kinematics.prepared import prepare
 from tools.models.guided import geneva
-from tools.models.random_linkages import driven_linkage
+from tools.random_mechanisms.linkages import driven_linkage
 
 GROUND, CRANK, COUPLER, ROCKER = 0.30, 0.10, 0.25, 0.15
 """m; shortest and longest together are as long as the others, so all bars lie in line at one crank angle."""

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mbsd import AssemblyError, Mechanism, constant_rate
-from mbsd.kinematics.prepare import prepare
+from mbsd.kinematics.prepared import prepare
 from mbsd.kinematics.sweep import sweep
 
 GRID = np.linspace(0.0, 1.0, 19)

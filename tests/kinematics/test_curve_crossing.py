@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mbsd import BranchError, Mechanism, ModelError, polynomial
-from mbsd.kinematics.limits.curve_jumps import refuse_jumps
+from mbsd.kinematics.limits.joints import refuse_jumps
 
 ROUND = np.linspace(0.0, 2 * math.pi, 65)[:-1]
 EIGHT = np.stack([np.sin(ROUND), 0.5 * np.sin(2 * ROUND)], axis=1)

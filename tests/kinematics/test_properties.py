@@ -12,7 +12,7 @@ from mbsd import Mechanism, SingularPoseError, harmonic, table
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.mechanism import Marker
 from mbsd.results.solution import Solution
-from tools.models.random_linkages import Carried, Linkage, linkage
+from tools.random_mechanisms.linkages import Carried, Linkage, linkage
 
 SEEDS = st.integers(0, 10**6)
 LOOPS = st.integers(1, 5)

@@ -14,10 +14,9 @@ import mbsd.kinematics.groups.parts
 from mbsd import Mechanism, MechanismError, constant_rate
 from mbsd.kinematics.groups.plan import describe
 from mbsd.kinematics.march import march_along
-from mbsd.kinematics.prepare import prepare
-from mbsd.kinematics.prepared import Prepared
+from mbsd.kinematics.prepared import Prepared, prepare
 from tools.models.assur_models import crank
-from tools.models.random_machines import RandomMachine
+from tools.random_mechanisms.shafts import RandomMachine
 
 
 def both(ready: Prepared, times: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray]]:

@@ -9,11 +9,11 @@ import pytest
 
 from mbsd import Mechanism, SingularPoseError, four_stroke
 from mbsd.kinematics import multipliers
-from mbsd.kinematics.prepare import prepare
+from mbsd.kinematics.prepared import prepare
 from mbsd.machines.engines.engine import engine
 from tools.models import linkages
-from tools.models.random_linkages import driven_linkage
 from tools.models.shaft_machines import loom
+from tools.random_mechanisms.linkages import driven_linkage
 
 SIZE = {"bore": 0.08, "stroke": 0.08, "rod": 0.14, "piston_mass": 0.5, "rod_mass": 0.4, "speed": 200.0}
 

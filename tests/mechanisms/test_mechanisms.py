@@ -27,7 +27,17 @@ SLOW = {
     *("inverse_slider_crank", "quick_return", "rotating_constraint", "slider_crank", "swing_table", "toggle_clamp"),
     *("bending_stiffness", "cam_follower_angular", "chain", "double_pendulum", "mass_spring_damper", "moving_pendulum"),
     *("hip_thrust", "planetary_gear", "rack_steering", "reflective_wall", "vibration_slider_crank", "windshield_wiper"),
-    *("flat_four", "inline_four", "radial_five", "single_cylinder", "v6", "v8"),
+    *(
+        "flat_four",
+        "gravitation",
+        "inline_four",
+        "quarter_car",
+        "radial_five",
+        "single_cylinder",
+        "trammel",
+        "v6",
+        "v8",
+    ),
 }
 """Folders whose like is among the others, which are run each time as new ones are; these are slow tests."""
 

@@ -12,13 +12,13 @@ from hypothesis import strategies as st
 
 from mbsd import Mechanism, constant_rate
 from tools.hunt import case
-from tools.hunt.families import all_families
-from tools.hunt.judging.agreement import Words, compare_driven
-from tools.hunt.mechanisms.gallery import loaded
+from tools.hunt.agreement import Words, compare_driven
 from tools.hunt.outcome import AGREED, WRONG
-from tools.hunt.solving.simulating import RUNS
-from tools.hunt.solving.sweeping import SWEEPS
-from tools.hunt.words.similar import in_units, mirrored, renamed
+from tools.hunt.simulating import RUNS
+from tools.hunt.sweeping import SWEEPS
+from tools.random_mechanisms.families import all_families
+from tools.random_mechanisms.registry import loaded
+from tools.random_mechanisms.similar import in_units, mirrored, renamed
 
 WORDS = ("world turned and moved", "another order", "mirror image", "other units", "other names")
 DERIVATIVES = "derivatives of the moved machine"

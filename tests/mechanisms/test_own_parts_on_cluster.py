@@ -20,9 +20,8 @@ import pytest
 from mechanisms.stages.loading.loading import author_code
 from mechanisms.stages.parts.on_cluster import answer, built
 from mechanisms.stages.parts.on_cluster.author_files import Order, by_content, collected
-from shared.cluster.contents import content_hash
-from shared.cluster.identity import identity
-from shared.cluster.preload import OF_PARTS, PARTS
+from shared.cluster.deal import content_hash
+from shared.cluster.preload import OF_PARTS, PARTS, identity
 from shared.stage import paths
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT

@@ -21,8 +21,8 @@ from mechanisms.stages.parts import stage as parts_stage
 from mechanisms.stages.parts.on_cluster import built, dealt
 from mechanisms.stages.parts.on_cluster.answer import Made
 from mechanisms.stages.parts.on_cluster.author_files import collected
-from shared.stage import locks
 from shared.stage.errors import UserError
+from shared.stage.files import is_abandoned
 from tests.mechanisms.author_project import Project, put
 from tests.mechanisms.test_inputs_of_parts import MECHANISM, PARTS
 
@@ -93,7 +93,7 @@ def test_a_killed_worker_loses_no_parts_and_changes_none(
     assert files(out_root / "arm") == far
     assert len(far) == 6
     left = list((tmp_path / "workers" / ".cluster" / "parts").iterdir())
-    assert all(locks.is_abandoned(path / built.LOCK) for path in left)
+    assert all(is_abandoned(path / built.LOCK) for path in left)
     assert len(left) <= 1
 
 

@@ -21,10 +21,9 @@ from mechanisms.stages.parts.meshes import check_mesh, mass_of, only_solid
 from mechanisms.stages.parts_files import TOLERANCE, binary_stl, read_mesh, stl_bytes
 from shared.contract import read_parts
 from shared.shapes import outline
-from shared.shapes.band import loop
 from shared.shapes.build import extruded
 from shared.shapes.facets import facets, volume_of
-from shared.shapes.outline import circle
+from shared.shapes.outline import circle, loop
 from shared.shapes.solid import Solid, placed
 from shared.shapes.units import mm
 from shared.stage.errors import UserError

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, MechanismError
-from mbsd.base.kept import Kept
+from mbsd.base.running import Kept
 from mbsd.measures import final, largest
 from mbsd.model.mechanism import connections
 from mbsd.numbers.names import Number, known_numbers, number_in

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mbsd import AssemblyError, Mechanism, constant_rate
-from mbsd.base.kept import MOST, Kept
+from mbsd.base.running import MOST, Kept
 
 
 def four_bar(crank: float = 0.04, start: float = 0.0, side: float = 100.0) -> Mechanism:
@@ -40,11 +40,11 @@ CHANGED: dict[str, Callable[[], Mechanism]] = {
 def test_another_mechanism_is_not_taken_for_the_one_before(what: str) -> None:
     import mbsd.kinematics.pose.close
     import mbsd.kinematics.pose.mobility
-    import mbsd.kinematics.sample_jacobians
+    import mbsd.kinematics.prepared
 
     poses(four_bar())
     after = poses(CHANGED[what]())
-    for kept in (mbsd.kinematics.pose.close._NEAREST, mbsd.kinematics.sample_jacobians._SAMPLES):
+    for kept in (mbsd.kinematics.pose.close._NEAREST, mbsd.kinematics.prepared._SAMPLES):
         kept._results.clear()
     for remembered in (mbsd.kinematics.pose.mobility._kept_independent, mbsd.kinematics.pose.mobility._kept_motion):
         remembered.cache_clear()

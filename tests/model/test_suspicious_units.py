@@ -16,7 +16,7 @@ from mbsd import Mechanism, ModelWarning, constant_rate, cycloidal, harmonic
 from mbsd.analyses.findings import Finding
 from mbsd.saving.document import build, document
 from shared.stage.paths import mechanism_names
-from tools.models import random_linkages
+from tools.random_mechanisms import linkages
 
 
 def _four_bar(scale: float = 1.0, **lengths: float) -> Mechanism:
@@ -170,7 +170,7 @@ def test_places_equal_but_for_rounding_are_one() -> None:
 
 @pytest.mark.parametrize("seed", range(12))
 def test_a_model_in_millimetres_is_told_in_one_sentence(seed: int) -> None:
-    written = document(random_linkages.linkage(seed, 1 + seed % 4).m)
+    written = document(linkages.linkage(seed, 1 + seed % 4).m)
     assert build(written, Mechanism).check() == []
     for body in written["bodies"].values():
         body["com"] = [1000 * x for x in body["com"]]

@@ -1,1 +1,1 @@
-"""What holds the project together: rooms, Makefile, documents, installation."""
+"""Tests of the project as a whole: rooms, Makefile, documents, installation."""

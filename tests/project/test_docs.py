@@ -80,7 +80,7 @@ def test_make_targets_exist(document: Path) -> None:
 
 @cache
 def refused_by_make(target: str) -> str:
-    """What make says against a target, if anything."""
+    """Return the complaint of make about a target, if any."""
     environment = {key: value for key, value in os.environ.items() if key not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS")}
     done = subprocess.run(["make", "-n", target], cwd=ROOT, env=environment, capture_output=True, text=True)
     return done.stderr or "it fails" if done.returncode else ""

@@ -13,8 +13,7 @@ from PIL import Image, ImageSequence
 
 from mbsd.drawing.look import FAINT, INK, QUIET
 from shared.stage.paths import ROOT
-from tools.documents.figures.dark import COLOUR, NEUTRAL, PAPER, dark, data_colours, name_of
-from tools.documents.figures.dark_gif import dark_gif
+from tools.documents.figures.dark import COLOUR, NEUTRAL, PAPER, dark, dark_gif, data_colours, name_of
 from tools.documents.figures.figures import PAGES, drawn
 
 LARGEST = 300_000

@@ -20,24 +20,21 @@ from mbsd import Mechanism, constant_rate, function, table
 from mbsd.model.force import FORCE_KINDS
 from mbsd.model.joint import CONTACT_KINDS, KINDS
 from mbsd.model.laws.examples import EXAMPLES
-from tools.hunt import case, pool
+from tools.hunt import case, moved_derivatives, pool
 from tools.hunt.__main__ import hunt
-from tools.hunt.families import all_families
-from tools.hunt.judging.agreement import SAME, Growth, Words, compare_driven, compare_free
-from tools.hunt.judging.checks import driven_problems, odd_steps, one_assembly, smooth
-from tools.hunt.judging.law_error import of_law
-from tools.hunt.mechanisms import extremes
-from tools.hunt.mechanisms.energy import audited
+from tools.hunt.agreement import SAME, Growth, Words, compare_driven, compare_free, of_law
+from tools.hunt.checks import driven_problems, odd_steps, one_assembly, smooth
+from tools.hunt.free_case import Free, nudged
+from tools.hunt.moved_derivatives import beside_its_own
 from tools.hunt.outcome import AGREED, BASE, HUNG, WRONG, CaseResult, Outcome
 from tools.hunt.pool import results
-from tools.hunt.solving import moved_derivatives
-from tools.hunt.solving.free_case import TOLERANCE, Free, nudged
-from tools.hunt.solving.moved_derivatives import beside_its_own
-from tools.hunt.subject import Subject
-from tools.hunt.words.described import on_a_base, seen_from
-from tools.hunt.words.reordered import exchanged, shuffled
-from tools.hunt.words.similar import mirrored
 from tools.models.four_bars import angles, model
+from tools.random_mechanisms import free
+from tools.random_mechanisms.contacts import audited
+from tools.random_mechanisms.described import on_a_base, seen_from
+from tools.random_mechanisms.families import all_families
+from tools.random_mechanisms.similar import exchanged, mirrored, shuffled
+from tools.random_mechanisms.subject import TOLERANCE, Subject
 
 LENGTHS = (0.4, 0.1, 0.38, 0.3)
 
@@ -119,7 +116,7 @@ def test_what_is_wrong_ends_in_an_exit_code(out_root: Path, monkeypatch: pytest.
     )
     assert hunt(2, seed=1, jobs=1) == 1
     report = json.loads((out_root / "hunt.json").read_text())
-    assert report["wrong_cases"] == 2
+    assert report["found_cases"]["wrong"] == 2
     assert report["findings"][0]["seed"] == 1_000_000
 
 
@@ -279,7 +276,7 @@ def test_solutions_over_other_spans_agree_where_a_law_is_known_by_values_alone()
 
 
 def test_contradicting_velocities_start_alike_in_all_words_of_a_refused_motion() -> None:
-    """Which of the given components a joint leaves depends on the axes: the centres approach, or go apart."""
+    """A joint keeps components that depend on the axes: the centres approach, or go apart."""
     m = Mechanism("loose", gravity=None)
     ring, gear = m.body("ring", 2.0, inertia=1.0), m.body("gear", 1.0, inertia=0.1)
     m.gear_pair("mesh", ring.origin, gear.origin, radius_i=0.5, radius_j=0.2, internal=True)
@@ -352,7 +349,7 @@ def test_steps_of_links_that_snap_are_no_fault_and_those_of_rounding_are() -> No
     """The steps of the first grow with the tolerance as the method's order says; 29194 were taken instead of 28."""
     _, snapping, rng = case.drawn(1_006_454, "masses far apart")
     sol = snapping.m.simulate(times=Free(snapping, rng).grid, tolerance=TOLERANCE)
-    assert sol.stats.steps > extremes.STEPS
+    assert sol.stats.steps > free.STEPS
     assert snapping.truth is not None
     assert not snapping.truth(sol)
     _, usual, _ = case.drawn(10, "masses far apart")
@@ -403,7 +400,7 @@ def test_efforts_of_redundant_joints_are_judged_beside_the_forces_they_are_diffe
 
 
 def test_a_law_that_is_raised_is_still_of_its_kind() -> None:
-    from tools.hunt.words.raised import Raised, raised
+    from tools.random_mechanisms.described import Raised, raised
 
     t = np.linspace(0.0, 1.4, 9)
     for law in EXAMPLES:

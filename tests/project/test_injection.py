@@ -1,4 +1,4 @@
-"""What a user writes as a name, frame or target is never executed, and links never lead to files of others."""
+"""Names, frames and targets of a user are never executed, and links never lead to files of others."""
 
 from __future__ import annotations
 

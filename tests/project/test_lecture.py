@@ -18,7 +18,7 @@ JUPYTER = pytest.mark.skipif(find_spec("nbclient") is None, reason="needs nbclie
 
 
 def texts(notebook: dict[str, Any]) -> list[str]:
-    """What its cells print, for each that has code."""
+    """Return the text that each cell with code prints."""
     return [
         "".join("".join(output.get("text", "")) for output in cell["outputs"])
         for cell in notebook["cells"]

@@ -5,8 +5,6 @@ from __future__ import annotations
 import ast
 import sys
 import tomllib
-from collections.abc import Iterator
-from functools import cache
 
 import numba
 import pytest
@@ -33,39 +31,18 @@ PACKAGE = {"imageio_ffmpeg": "imageio-ffmpeg", "PIL": "pillow"}
 """Of what is imported under another name."""
 
 
-@cache
-def trees() -> dict[str, ast.Module]:
-    """Return the syntax trees of the solver's files, by path; each keeps to the syntax of the oldest Python."""
-    oldest = tuple(map(int, PROJECT["requires-python"].removeprefix(">=").split(".")))
-    return {
-        str(file): ast.parse(file.read_text(), filename=str(file), feature_version=oldest)
-        for file in (ROOT / "mbsd").rglob("*.py")
-    }
-
-
-def imported(node: ast.AST, inside: bool = False) -> Iterator[tuple[str, bool]]:
-    """Yield what is imported below a node, and whether inside a function or for types alone."""
-    for child in ast.iter_child_nodes(node):
-        if isinstance(child, ast.Import):
-            yield from ((alias.name.partition(".")[0], inside) for alias in child.names)
-        elif isinstance(child, ast.ImportFrom):
-            yield (child.module or "").partition(".")[0], inside
-        for_types = isinstance(child, ast.If) and ast.unparse(child.test) == "TYPE_CHECKING"
-        yield from imported(child, inside or for_types or isinstance(child, ast.FunctionDef))
-
-
-def test_the_solver_imports_an_extra_only_inside_a_function() -> None:
-    known = {"mbsd", "llvmlite", *CORE, *sys.stdlib_module_names}  # numba brings llvmlite
-    for file, tree in trees().items():
-        for top, inside in imported(tree):
-            assert top in known or top in OPTIONAL, f"{file} imports {top}"
-            assert top in known or inside, f"{file} imports {top} when it is itself imported"
-
-
-def test_the_solver_keeps_to_the_syntax_of_its_oldest_python() -> None:
+def test_the_solver_imports_its_three_packages_and_its_extras_alone() -> None:
+    """Ruff holds that extras load inside functions (TID253), and the syntax of the oldest Python."""
+    known = {"mbsd", "llvmlite", *CORE, *OPTIONAL, *sys.stdlib_module_names}  # numba brings llvmlite
+    for file in (ROOT / "mbsd").rglob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text())):
+            names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+            assert {name.partition(".")[0] for name in names} <= known, f"{file} imports {names}"
     oldest = PROJECT["requires-python"].removeprefix(">=")
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["ruff"]["per-file-target-version"]
+    assert settings == {"mbsd/**/*.py": "py" + oldest.replace(".", "")}
     assert f"Programming Language :: Python :: {oldest}" in PROJECT["classifiers"]
-    assert trees()
 
 
 def test_each_optional_import_has_its_extra() -> None:

@@ -102,7 +102,7 @@ def test_what_makes_parts_or_pictures_ends_before_it_begins_where_libraries_are_
     for target in ("run-four-bar", "film-four-bar", "parts-four-bar", "overnight"):
         done = run("make", "-o", "install", "PYTHON=echo", target, cwd=tmp_path)
         assert done.returncode != 0
-        assert "error: parts and pictures need these libraries; nothing was made" in done.stderr
+        assert "error: parts and pictures need these libraries; nothing was built" in done.stderr
         assert done.stdout == ""
     assert run("make", "-o", "install", "PYTHON=echo", "animate-four-bar", cwd=tmp_path).returncode == 0
     (tmp_path / ".venv" / "libraries-found").touch()

@@ -58,7 +58,7 @@ class Clone:
         (self.folder / "mbsd" / "__init__.py").write_text(f"PLACE = {place!r}\n")
 
     def install(self) -> str:
-        """What the installation step says; uv is one that only marks the environment."""
+        """Return the output of the installation step; uv is one that only marks the environment."""
         programs = self.folder / "programs"
         programs.mkdir(exist_ok=True)
         uv = programs / "uv"
@@ -70,7 +70,7 @@ class Clone:
         return done.stdout + done.stderr
 
     def python(self) -> str:
-        """Which sources and which environment a script of another folder gets."""
+        """Return the sources and the environment that a script of another folder gets."""
         return self._said("python", "-c", WHERE)
 
     def tool(self) -> str:

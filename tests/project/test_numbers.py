@@ -8,8 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tools.numbers.contents import outcome
-from tools.numbers.digest import digest
+from tools.numbers.contents import digest, outcome
 from tools.numbers.kept import farthest, keep, kept, read
 from tools.numbers.runs import driven_four_bar
 

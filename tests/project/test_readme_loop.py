@@ -10,7 +10,7 @@ from PIL import Image
 
 from mechanisms.four_bar.mechanism import Params, build
 from shared.stage.paths import ROOT
-from tools.documents.readme_loop.story import CRANK, LINES, RATE, TURNS, frames, run
+from tools.documents.readme_loop import CRANK, LINES, RATE, TURNS, frames, run
 
 LOOP = ROOT / "docs" / "readme_loop.webp"
 

@@ -15,10 +15,8 @@ import mbsd
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
 from tools.release import __main__ as program
-from tools.release.archives import clone, commit_time, differences, dirt, sums
-from tools.release.checks import CHECKS
-from tools.release.installed import FOUR_BAR
-from tools.release.licences import faults_of_licences, packages_of_the_page
+from tools.release.archives import FOUR_BAR, clone, commit_time, differences, dirt, sums
+from tools.release.checks import CHECKS, faults_of_licences, packages_of_the_page
 from tools.release.written import disagreements, faults_of_citation, notes, versions
 
 CHANGELOG = """# Changelog

@@ -19,7 +19,7 @@ TESTS = ROOT / "tests"
 
 
 class _Seen:
-    """What is collected when all tests are."""
+    """Plugin that keeps all collected tests."""
 
     items: list[pytest.Item]
 

@@ -15,16 +15,10 @@ from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
 from tests.running.needs import needed
 from tools.site import __main__ as program
+from tools.site.build import navigation
 from tools.site.checks import faults
-from tools.site.navigation import navigation
-from tools.site.notebooks import page_of_notebook
-from tools.site.pictures import for_both_themes
-from tools.site.reference.contents import ROOMS, contents
-from tools.site.reference.entries import entry
-from tools.site.reference.members import members
-from tools.site.reference.words import signature, text
-from tools.site.sources import page_of_source
-from tools.site.staging import linked_page
+from tools.site.reference import ROOMS, contents, entry, members, signature, text
+from tools.site.staging import for_both_themes, linked_page, page_of_notebook, page_of_source
 
 BUILT = pytest.mark.skipif(find_spec("material") is None, reason="needs mkdocs-material, of the extra docs")
 

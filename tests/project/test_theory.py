@@ -9,11 +9,11 @@ import pytest
 
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
-from tools.site.theory import PAGE, with_equations
+from tools.site.staging import THEORY, with_equations
 
 
 def test_every_section_of_the_page_is_filled_from_its_sources() -> None:
-    kept = (ROOT / PAGE).read_text()
+    kept = (ROOT / THEORY).read_text()
     filled = with_equations(kept, ROOT)
     sections = re.split(r"^## ", filled, flags=re.MULTILINE)[1:]
     assert len(sections) == kept.count("Sources: [") == len(re.findall(r"^## ", kept, re.MULTILINE)) > 10

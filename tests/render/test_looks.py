@@ -17,7 +17,7 @@ from render.film.inputs import named
 from render.looks import LOOKS, Family, chosen
 from render.presets import ASPECTS, PRESETS, preset_named
 from render.view.solid import looks_of
-from shared.contract.mount import Kind, mounted
+from shared.contract.parts import Kind, mounted
 from shared.contract.shot import LookName
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, Out, mechanism_names

@@ -1,4 +1,4 @@
-"""What tests need of the system: what is missing is told at the start and at the end, and skipped or refused."""
+"""Needs of tests: missing programs are reported at the start and at the end, and tests skipped or refused."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def _skipped(*names: str) -> NoReturn:
 
 
 def is_strict() -> bool:
-    """Whether something missing is an error: ``make test STRICT=1``, and CI unless STRICT=0."""
+    """Return True if something missing is an error: ``make test STRICT=1``, and CI unless STRICT=0."""
     return (os.environ.get("STRICT") or os.environ.get("CI") or "0") != "0"
 
 
@@ -50,7 +50,7 @@ class Needs:
 
     @property
     def lines(self) -> list[str]:
-        """What is missing, what becomes of the tests, and the command that installs it."""
+        """Missing things, what becomes of their tests, and the command that installs them."""
         lines = []
         if self.libraries:
             lines.append(f"{sentence(self.libraries)}; only tests of the solver run")

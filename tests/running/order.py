@@ -12,6 +12,8 @@ from typing import Any
 
 import pytest
 
+from tests.running import samples
+
 SECONDS = Path(__file__).with_name("seconds.json")
 """Seconds that each long group took; `make test PYTEST="... --record-seconds"` writes it anew."""
 LONG = 4.0
@@ -38,14 +40,14 @@ def recorded() -> dict[str, float]:
 
 
 def place_of(group: str, seconds: dict[str, float]) -> float:
-    """What groups are sorted by: quick ones stay as they are, then by length, so that all processes end together."""
+    """Return the key of a group: quick ones stay, then the longest first, so that all processes end together."""
     is_folder = group.partition("[")[0].endswith(FOLDERS)
     length = seconds.get(group, UNKNOWN if is_folder else 0.0)
     return 1.0 / length if length else 0.0
 
 
 def is_fast(nodeid: str, seconds: dict[str, float]) -> bool:
-    """Whether a test belongs to ``make test-fast``."""
+    """Return True if a test belongs to ``make test-fast``."""
     group = group_of(nodeid)
     return group not in seconds and "[" not in group and not group.startswith(tuple(f"tests/{room}/" for room in HEAVY))
 
@@ -57,6 +59,7 @@ class Order:
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         """Mark, before ``-m`` chooses, and sort by group; the order within a group stays."""
         seconds = recorded()
+        samples.mark(items)
         for item in items:
             if is_fast(item.nodeid, seconds) and item.get_closest_marker("slow") is None:
                 item.add_marker("fast")

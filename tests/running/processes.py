@@ -23,7 +23,7 @@ def command_lines() -> dict[int, str]:
 
 
 def working_for(folder: Path) -> dict[int, str]:
-    """Those of the other processes whose command lines name a folder."""
+    """Return the other processes whose command lines name a folder."""
     return {number: line for number, line in command_lines().items() if str(folder) in line and number != os.getpid()}
 
 
@@ -33,7 +33,9 @@ def ends_with_us() -> None:
 
 
 def run_to_its_end(command: list[str], seconds: float, **options: Any) -> subprocess.CompletedProcess[str]:
-    """What a command says and its exit code. One that takes longer, or whose test is interrupted, is asked to end.
+    """Return the output of a command and its exit code.
+
+    One that takes longer, or whose test is interrupted, is terminated.
 
     ``subprocess.run`` kills it, and then it can neither end what it has started nor unmount.
     """

@@ -219,12 +219,12 @@ def test_any_bytes_are_refused_with_a_sentence(content: bytes) -> None:
 
 def test_a_byte_that_is_no_text_is_told_with_its_place() -> None:
     content = b'{"schema": "mbsd.motion", "mechanism": "four\xff"}'
-    with pytest.raises(UserError, match=r"^data\.json: byte 44 is 0xff, which is no UTF-8; make it again$"):
+    with pytest.raises(UserError, match=r"^data\.json: byte 44 is 0xff, which is not UTF-8; rebuild it$"):
         jsonfile.decode(content, Motion, "data.json")
 
 
 def test_a_missing_file_says_what_to_do(path: Path) -> None:
-    with pytest.raises(UserError, match=r"data\.json does not exist; make the stage that writes it first"):
+    with pytest.raises(UserError, match=r"data\.json does not exist; run the stage that writes it first"):
         contract.read_motion(path)
 
 

@@ -13,7 +13,7 @@ import pytest
 
 from mbsd.base.files import write_whole
 from shared.stage.errors import UserError
-from shared.stage.files import file_hash, sources_hash, whole_file, write_bytes
+from shared.stage.files import file_hash, remove_leftovers, sources_hash, whole_file, write_bytes
 from shared.stage.paths import ROOT
 
 
@@ -88,15 +88,26 @@ def test_a_killed_writer_keeps_the_old_file(target: Path) -> None:
 def test_what_a_killed_writer_left_is_removed_and_what_is_being_written_is_not(target: Path) -> None:
     elsewhere = target.with_name("elsewhere")
     elsewhere.write_bytes(b"a file of the user's")
-    target.with_name(".data-killed.json").write_bytes(b"part")
-    target.with_name(".data-link.json").symlink_to(elsewhere)
+    target.with_name(".data-0123abcd.json").write_bytes(b"part")
+    target.with_name(".data-4567abcd.json").symlink_to(elsewhere)
     with whole_file(target) as temporary:
         write_bytes(target, b"by another process")
         assert temporary.exists()
-        assert not target.with_name(".data-killed.json").exists()
+        assert not target.with_name(".data-0123abcd.json").exists()
         temporary.write_bytes(b"new")
     assert target.read_bytes() == b"new"
     assert elsewhere.read_bytes() == b"a file of the user's"
+
+
+def test_leftovers_of_all_targets_are_removed_but_for_files_of_the_user(target: Path) -> None:
+    kept = [target.with_name(name) for name in (".data-of-mine.json", ".gitignore", "film-0123abcd.mp4")]
+    for path in (*kept, target.with_name(".film-0123abcd.mp4"), target.with_name(".film-89abcdef.gif")):
+        path.write_bytes(b"part")
+    with whole_file(target) as temporary:
+        temporary.write_bytes(b"new")
+        remove_leftovers(target.parent)
+        assert sorted(target.parent.iterdir()) == sorted([*kept, target, temporary])
+    remove_leftovers(target.parent / "nowhere")
 
 
 def test_the_word_for_what_stands_in_the_way(target: Path) -> None:

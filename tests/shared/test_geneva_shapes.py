@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mechanisms.stages.clearance.pieces import MeshPiece
-from shared.shapes.geneva import Geneva
+from shared.shapes.cams import Geneva
 
 THICK = 7.0
 

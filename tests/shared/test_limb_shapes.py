@@ -7,7 +7,7 @@ import math
 import pytest
 
 from shared.shapes import mannequin
-from shared.shapes.limb import AROUND, joint_ball, limb, socket
+from shared.shapes.mannequin import AROUND, joint_ball, limb, socket
 from tests.shared.shape_checks import checked
 
 

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from shared.stage.lineage import PERIOD, is_ending
 from shared.stage.paths import ROOT
+from shared.stage.signals import PERIOD, is_ending
 from tests.running.processes import command_lines, working_for
 
 STAGE = """

@@ -13,8 +13,7 @@ from shared.contract import Mass
 from shared.shapes import base, engraving, outline
 from shared.shapes.build import extruded
 from shared.shapes.link import Eye, link, plate_link
-from shared.shapes.pin import Groove, Head, bushing, circlip, pin, stylus, washer
-from shared.shapes.pivot import Pivot
+from shared.shapes.pin import Groove, Head, Pivot, bushing, circlip, pin, stylus, washer
 from shared.shapes.screw import SOCKET, socket_screw
 from shared.shapes.solid import placed
 from shared.shapes.units import cubic_metres, inertia_metres, metres, mm
@@ -69,12 +68,7 @@ def test_plate_link(x: float, y: float, thickness: float, waist: float, windowed
 
 
 @few
-@given(
-    diameter=sizes(3, 16),
-    length=sizes(12, 90),
-    headed=st.booleans(),
-    grooved=st.booleans(),
-)
+@given(diameter=sizes(3, 16), length=sizes(12, 90), headed=st.booleans(), grooved=st.booleans())
 def test_pin(diameter: float, length: float, headed: bool, grooved: bool) -> None:
     head = Head(1.8 * diameter, 4.0) if headed else None
     groove = Groove(0.3 * length, 1.0, 0.06 * diameter) if grooved else None

@@ -13,8 +13,8 @@ from mechanisms.stages.solve.masses import give_masses
 from render.film.film import Film
 from render.glb.build import glb
 from shared.contract import BodyParts, End, Parts, read_motion, read_parts, write_parts
+from shared.contract.geometry import with_rods
 from shared.contract.shot import Shot
-from shared.contract.spanning import with_rods
 from shared.shapes.bodies import Bodies
 from shared.stage.errors import UserError
 from tests.mechanisms.clearance.clearance_pieces import NO_MASS

@@ -14,7 +14,7 @@ from shared.stage.console import run_cli
 from shared.stage.paths import ROOT
 from shared.system import __main__ as command
 from shared.system import missing
-from shared.system.wanted import LIBRARIES, PROGRAMS
+from shared.system.missing import LIBRARIES, PROGRAMS
 
 LINUX = pytest.mark.skipif(sys.platform != "linux", reason="a Mac needs no libraries")
 

@@ -110,7 +110,7 @@ def test_a_killed_transfer_goes_on(out_root: Path, project: Path, other: Machine
 
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stderr
-    assert re.search(r"fetch: [23]\.\d MB are here from a run that was stopped", done.stdout)
+    assert re.search(r"fetch: [23]\.\d MB remain from a stopped run", done.stdout)
     assert here(out_root) == there(project)
     assert [path.name for path in out_root.iterdir()] == ["films"]
     # Blocks and what ssh adds; rsync may have written on for a moment before it ended.
@@ -132,7 +132,7 @@ def test_two_at_once_do_not_disturb_each_other(out_root: Path, project: Path) ->
 def test_what_stands_in_the_way_is_told(
     out_root: Path, project: Path, other: Machine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with pytest.raises(UserError, match=r"nowhere/out/films is not there; make fetch HOST=.* FOLDER=<the project's"):
+    with pytest.raises(UserError, match=r"nowhere/out/films does not exist; make fetch HOST=.* FOLDER=<the project's"):
         fetch.run(HOST, str(project / "nowhere"))
     assert [path.name for path in out_root.iterdir()] == ["films"]
     monkeypatch.setenv("RSYNC_RSH", other.shell(port=1))
@@ -169,7 +169,7 @@ def test_no_name_of_a_machine(out_root: Path, host: str) -> None:
 
 @pytest.mark.parametrize("folder", ["a b", "$(touch pwned)", "x;y", "`x`", "a\nb", "a'b", "~anna/mbsd", "*"])
 def test_no_path(out_root: Path, folder: str) -> None:
-    with pytest.raises(UserError, match=r"FOLDER=.* is not a path that goes through two shells"):
+    with pytest.raises(UserError, match=r"FOLDER=.* cannot pass through two shells"):
         fetch.run("anna@box", folder)
 
 

@@ -21,7 +21,7 @@ from shared.contract.shot import Shot
 from shared.stage import jsonfile
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, Out
-from studio.verify import files, pictures, verify
+from studio.verify import files, verify
 from studio.verify import film as compared_film
 from tools.fixtures import film_fixture
 
@@ -76,7 +76,7 @@ def test_a_film_is_the_same_and_each_difference_is_told(filmed: Out, capsys: pyt
         r"solids \(STL, STEP\): differs, 1 of 10 files, such as coupler-coupler\.stl from byte 99 on",
         r"motion \(data\.json\): differs, at time\[1\]: ",
         r"frame 1: differs, 1 of 5184 pixels by up to \d+ of 255, the first at \(7, 3\)",
-        r"sound \(four_bar-tiny\.wav\): differs, it cannot be made again: .*time\[",
+        r"sound \(four_bar-tiny\.wav\): differs, it cannot be rebuilt: .*time\[",
         # The encoder looks ahead, so frames before the damaged one may differ, too.
         r"film: differs, \d+ of 12 decoded frames, the first is frame [01]",
     ):
@@ -126,43 +126,43 @@ def test_a_real_mechanism_is_solved_again(out_root: Path) -> None:
 
 
 def test_what_is_not_there_is_told(out_root: Path) -> None:
-    with pytest.raises(UserError, match=r"four_bar: .*data\.json is not there; make run-four-bar first"):
+    with pytest.raises(UserError, match=r"four_bar: .*data\.json does not exist; make run-four-bar first"):
         verify.run("four_bar", TINY)
     assert not out_root.exists()
 
 
 @pytest.mark.parametrize(("words", "numbers"), [("", [0, 40, 80]), ("5", [5]), ("7, 3,7", [3, 7]), ("119 0", [0, 119])])
 def test_chosen_frames(words: str, numbers: list[int]) -> None:
-    assert pictures.chosen(words, 120, "arm") == numbers
+    assert compared_film.chosen(words, 120, "arm") == numbers
 
 
 def test_few_frames_are_chosen_once() -> None:
-    assert pictures.chosen("", 1, "arm") == [0]
-    assert pictures.chosen("", 2, "arm") == [0, 1]
+    assert compared_film.chosen("", 1, "arm") == [0]
+    assert compared_film.chosen("", 2, "arm") == [0, 1]
 
 
 @pytest.mark.parametrize("words", ["120", "-1", "1.5", "x", "²"])
 def test_no_such_frame(words: str) -> None:
     with pytest.raises(UserError, match=r"arm: there is no frame .*; the film has frames 0 to 119"):
-        pictures.chosen(words, 120, "arm")
+        compared_film.chosen(words, 120, "arm")
 
 
 def test_differences_of_files(tmp_path: Path) -> None:
     old, new = tmp_path / "a.json", tmp_path / "b.json"
     old.write_text('{"a": [1, {"b": 2}], "c": 1}')
-    assert str(files.compared("a", old, new)) == "a: differs, it was not made again"
-    assert str(files.compared("a", new, old)) == "a: differs, it is not there, but was made again"
+    assert str(files.compare("a", old, new)) == "a: differs, it was not rebuilt"
+    assert str(files.compare("a", new, old)) == "a: differs, it does not exist, but was rebuilt"
     for text, words in (
-        ('{"a": [1, {"b": 3}], "c": 1}', "at a[1].b: 2, made again 3"),
-        ('{"a": [1], "c": 1}', "at a[1]: {'b': 2}, made again nothing"),
-        ('{"a": [1, {"b": 2}], "c": 1, "d": 0}', "at d: nothing, made again 0"),
+        ('{"a": [1, {"b": 3}], "c": 1}', "at a[1].b: 2, rebuilt 3"),
+        ('{"a": [1], "c": 1}', "at a[1]: {'b': 2}, rebuilt nothing"),
+        ('{"a": [1, {"b": 2}], "c": 1, "d": 0}', "at d: nothing, rebuilt 0"),
         ('{"a": [1, {"b": 2}],  "c": 1}', "in its layout"),
-        ('{"a": [1, {"b"', "it is not whole JSON; from byte 14 on; 28 bytes, made again 14"),
+        ('{"a": [1, {"b"', "it is not whole JSON; from byte 14 on; 28 bytes, rebuilt 14"),
     ):
         new.write_text(text)
-        assert files.compared("a", old, new).detail == words
+        assert files.compare("a", old, new).detail == words
     new.write_bytes(old.read_bytes())
-    assert files.compared("a", old, new).verdict == "same"
+    assert files.compare("a", old, new).verdict == "same"
 
 
 def test_a_damaged_film_is_a_finding(tmp_path: Path) -> None:
@@ -178,15 +178,15 @@ def test_a_damaged_film_is_a_finding(tmp_path: Path) -> None:
     (scratch := tmp_path / "scratch").mkdir()
 
     def finding() -> str:
-        return str(compared_film.compared(path, scratch, store, index, TINY))
+        return str(compared_film.compare_film(path, scratch, store, index, TINY))
 
-    assert finding() == "film: not compared, arm-tiny.mp4 is not there"
+    assert finding() == "film: not compared, arm-tiny.mp4 does not exist"
     encode.encode(((store.folder / name).read_bytes() for name in names), 4, TINY, 30, path)
     assert finding() == "film: same, 4 decoded frames, the same file"
     whole = path.read_bytes()
     path.write_bytes(whole[:-20])
     assert "film: differs" in finding()
     encode.encode(((store.folder / name).read_bytes() for name in names[:3]), 3, TINY, 30, path)
-    assert finding() == "film: differs, 3 frames decode, made again 4"
+    assert finding() == "film: differs, 3 frames decode, rebuilt 4"
     (store.folder / names[2]).write_bytes(b"")
     assert finding() == f"film: differs, 1 of its pictures are gone or damaged, such as {names[2]}"

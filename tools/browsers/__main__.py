@@ -24,10 +24,7 @@ from tools.browsers.firefox import Firefox
 from tools.browsers.use import listening, use, use_flat
 from tools.browsers.webkit import WebKit
 
-BROWSERS = {
-    "firefox": (Firefox, "firefox"),
-    "webkit": (WebKit, "WebKitWebDriver"),
-}
+BROWSERS = {"firefox": (Firefox, "firefox"), "webkit": (WebKit, "WebKitWebDriver")}
 
 
 def main() -> int:

@@ -20,10 +20,10 @@ from shared.stage.errors import UserError
 KINDS = {
     "figures": "figures.figures",
     "lecture": "lecture",
-    "bank-angles": "engines.bank_angles",
-    "run-up": "engines.run_up",
-    "integrators": "integrators.measured",
-    "readme-loop": "readme_loop.film",
+    "bank-angles": "bank_angles",
+    "run-up": "run_up",
+    "integrators": "integrators",
+    "readme-loop": "readme_loop",
     "sound": "sound_picture",
 }
 """Module that builds each kind: its ``main`` gets the other words."""

@@ -14,8 +14,7 @@ from functools import partial
 from shared.stage.console import run_cli, say
 from shared.stage.paths import out_root
 from tools.hunt import case
-from tools.hunt.asked import parser, refuse_unknown
-from tools.hunt.loop import follow, seeds
+from tools.hunt.loop import follow, parser, refuse_unknown, seeds
 from tools.hunt.outcome import HUNG, WRONG, CaseResult
 from tools.hunt.pool import LIMIT, results
 from tools.hunt.report import Tally

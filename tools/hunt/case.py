@@ -9,17 +9,17 @@ import zlib
 
 import numpy as np
 
-from mbsd.arrays.start_state import started_at
+from mbsd.arrays.starts import started_at
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
-from tools.hunt.families import all_families
-from tools.hunt.judging.agreement import Growth
-from tools.hunt.judging.checks import closed, driven_problems, finite
-from tools.hunt.outcome import AGREED, BASE, REFUSED, WRONG, CaseResult, Outcome, Raw, attempt
-from tools.hunt.solving.free_case import Free, nudged
-from tools.hunt.solving.simulating import RUNS
-from tools.hunt.solving.sweeping import HEALTHY, SWEEPS, Driven
-from tools.hunt.subject import Family, Subject
-from tools.hunt.words.described import restarted
+from tools.hunt.agreement import Growth
+from tools.hunt.checks import closed, driven_problems, finite
+from tools.hunt.free_case import Free, nudged
+from tools.hunt.outcome import AGREED, BASE, REFUSED, WRONG, CaseResult, Outcome
+from tools.hunt.simulating import RUNS
+from tools.hunt.sweeping import HEALTHY, SWEEPS, Driven
+from tools.random_mechanisms.described import restarted
+from tools.random_mechanisms.families import all_families
+from tools.random_mechanisms.subject import Family, Raw, Subject, attempt
 
 VARIATIONS = 4
 """Number of variations of each mechanism, drawn at random."""

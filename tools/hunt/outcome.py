@@ -1,12 +1,12 @@
-"""What came of one solution of a case."""
+"""Outcome of one solution of a case, and variations of a case by name."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
 
-from mbsd.base.errors import MechanismError
+# What came of one solution of a case.
+
 
 AGREED, REFUSED, UNCLEAR, WRONG, HUNG = "agreed", "refused", "not compared", "wrong", "hung"
 """refused: with an error of the package, for a reason that holds. not compared: the variation does not apply, or the
@@ -37,18 +37,17 @@ class CaseResult:
     seconds: float = 0.0
 
 
-class Raw(Exception):
-    """An error that is none of the package: what a user would see as a traceback."""
+# Where variations of a case stand by name.
 
 
-def attempt(solve: Callable[[], Any]) -> tuple[Any, MechanismError | None]:
-    """The solution, or the package's error; anything else comes out as :class:`Raw`."""
-    try:
-        return solve(), None
-    except MechanismError as error:
-        return None, error
-    except Exception as error:
-        import traceback
+class Variations[Case](dict[str, Callable[[Case], Outcome]]):
+    """By name, in the order in which they are run."""
 
-        where = traceback.extract_tb(error.__traceback__)[-1]
-        raise Raw(f"{type(error).__name__}: {error} ({where.filename}:{where.lineno})") from error
+    def enter(self, name: str) -> Callable[[Callable[[Case], Outcome]], Callable[[Case], Outcome]]:
+        """Decorates a variation, which takes a case and gives its outcome."""
+
+        def entered(run: Callable[[Case], Outcome]) -> Callable[[Case], Outcome]:
+            self[name] = run
+            return run
+
+        return entered

@@ -17,8 +17,7 @@ from shared.stage.console import run_cli
 from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from shared.stage.paths import out_root
-from tools.hunt.asked import parser
-from tools.hunt.loop import follow, seeds
+from tools.hunt.loop import follow, parser, seeds
 from tools.hunt.outcome import HUNG, WRONG, CaseResult
 from tools.hunt.pool import results
 from tools.hunt.report import Tally

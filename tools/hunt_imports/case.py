@@ -16,11 +16,11 @@ from pathlib import Path
 
 from mbsd import MechanismError
 from shared.stage.errors import UserError
-from studio.imports.reading import read
-from studio.imports.trial import difference, try_out
+from studio.imports.reading import difference, read, try_out
 from studio.imports.writing import mechanism_py
-from tools.hunt.outcome import AGREED, REFUSED, WRONG, CaseResult, Outcome, Raw, attempt
+from tools.hunt.outcome import AGREED, REFUSED, WRONG, CaseResult, Outcome
 from tools.hunt_imports.mutations import Damaged, damaged
+from tools.random_mechanisms.subject import Raw, attempt
 
 FAULT = "fault of this importer"
 NAMED, NUMBER = re.compile(r"'[^']*'|\"[^\"]*\""), re.compile(r"[-+]?\d[\w.+-]*")

@@ -18,15 +18,13 @@ from itertools import chain
 
 from shared.stage.console import run_cli, say
 from shared.stage.paths import out_root
-from tools.hunt.asked import parser, refuse_unknown
-from tools.hunt.loop import follow, seeds
+from tools.hunt.loop import follow, parser, refuse_unknown, seeds
 from tools.hunt.outcome import CaseResult
 from tools.hunt.pool import results
+from tools.hunt.report import Tally
 from tools.hunt_parts import case
-from tools.hunt_parts.kept import Kept
-from tools.hunt_parts.outcome import WRONG
-from tools.hunt_parts.own_kinds import KINDS
-from tools.hunt_parts.report import Tally
+from tools.hunt_parts.outcome import BUILT, REFUSED, STATES, WRONG, Kept
+from tools.random_mechanisms.own_kinds import KINDS
 
 LIMIT = 900.0
 """s of one case, some fifty times the usual."""
@@ -49,28 +47,23 @@ def main() -> int:
 
 
 def hunt(
-    n: int,
-    seed: int,
-    jobs: int,
-    kind: str | None = None,
-    solids: bool = True,
-    limit: float = LIMIT,
-    anew: bool = False,
+    n: int, seed: int, jobs: int, kind: str | None = None, solids: bool = True, limit: float = LIMIT, anew: bool = False
 ) -> int:
     """n cases, of one kind if it is given; 0 if nothing was found. Goes on where one like it was stopped."""
     kept = Kept(out_root() / "hunt_parts" / f"{_named(seed, kind, solids)}.jsonl")
     if anew:
         kept.path.unlink(missing_ok=True)
-    tally, before = Tally(), kept.read(seeds(seed, n))
+    tally = Tally("mbsd.hunt_parts", STATES, WRONG, (BUILT, REFUSED))
+    before = kept.read(seeds(seed, n))
     if before:
         others = f", {kept.others} of them by other sources (--anew looks at all again)" if kept.others else ""
         say("hunt-parts", f"{len(before)} of {n} are known{others}: {kept.path}")
 
     def add(result: CaseResult) -> list[str]:
-        outcome = tally.add(result)
+        found = tally.add(result)
         if result not in before:
             kept.add(result)
-        return [f"{outcome.state}: case {result.seed} ({result.family}): {outcome.detail}"] * (outcome.state in WRONG)
+        return [f"{outcome.state}: case {result.seed} ({result.family}): {outcome.detail}" for outcome in found]
 
     known = {result.seed for result in before}
     fresh = results(

@@ -13,8 +13,8 @@ from mbsd.base.errors import MechanismError
 from shared.stage.errors import UserError
 from tools.hunt.case import drawn
 from tools.hunt.outcome import BASE, CaseResult, Outcome
-from tools.hunt_parts import own_kinds
 from tools.hunt_parts.outcome import BUILT, COLLIDES, ERROR, REFUSED, STUCK, UNSOUND, reason
+from tools.random_mechanisms import own_kinds
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.automatic import Automatic
     from mechanisms.stages.clearance.pieces import MeshPiece
     from shared.shapes.bodies import Bodies
-    from tools.hunt.subject import Subject
+    from tools.random_mechanisms.subject import Subject
 
 ENGRAVED = 4
 """One case in so many has an engraved base; marks only take away, so what is clear of a bare one is clear of it."""

@@ -14,11 +14,7 @@ UP = math.pi / 2
 
 
 def slider_crank(
-    cycle: GasCycle | None = None,
-    rate: float | None = 200.0,
-    start: float = UP,
-    mounted: bool = False,
-    **more: Any,
+    cycle: GasCycle | None = None, rate: float | None = 200.0, start: float = UP, mounted: bool = False, **more: Any
 ) -> Mechanism:
     """A crank, a rod and a piston below a head; driven at ``rate`` (rad/s) from the angle ``start``, or free.
 

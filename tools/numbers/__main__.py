@@ -33,7 +33,7 @@ SAME_EVERYWHERE = {
 def main() -> int:
     """Returns 1 where numbers differ."""
     from tools.numbers import kept
-    from tools.numbers.digest import digest
+    from tools.numbers.contents import digest
 
     match sys.argv[1:]:
         case ["check", *only] if len(only) <= 1:
@@ -58,27 +58,26 @@ def main() -> int:
 
 
 def _events(what: str, only: str) -> int:
-    from tools.numbers.events import commands, loop
+    from tools.numbers.events import commands
 
     if what == "loop":
-        loop.show(only)
+        commands.show(only)
         return 0
     return commands.check(only) if what == "check" else commands.record(only)
 
 
 def _measured(only: str, measure: Callable[[Any], Any]) -> dict[str, Any]:
-    from tools.numbers import blocks, gallery, groups, runs
+    from tools.numbers import blocks, groups, published, runs
     from tools.numbers.contents import outcome
-    from tools.numbers.published import published
 
     measured, started = {}, time.perf_counter()
-    for source in (runs, groups, blocks, gallery):
+    for source in (runs, groups, blocks, published):
         for name, run in source.runs():
             if only in name:
                 with warnings.catch_warnings(action="ignore"):
                     measured[name] = measure(outcome(run))
     if not only or any(name.startswith("published") and only in name for name in _recorded()):
-        measured.update((name, value) for name, value in published(only, measure) if only in name)
+        measured.update((name, value) for name, value in published.published(only, measure) if only in name)
     print(f"numbers: {len(measured)} runs in {time.perf_counter() - started:.0f} s")
     return measured
 
@@ -88,7 +87,7 @@ def _recorded() -> dict[str, str]:
 
 
 def _check(only: str) -> int:
-    from tools.numbers.digest import digest
+    from tools.numbers.contents import digest
 
     recorded = {name: value for name, value in _recorded().items() if only in name}
     now = _measured(only, digest)

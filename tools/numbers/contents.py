@@ -1,8 +1,9 @@
-"""All numbers and texts within a result, by name."""
+"""Numbers and texts within a result by name, and the hash of their raw bytes."""
 
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
@@ -13,6 +14,9 @@ from mbsd.model.force import ForceKind
 from mbsd.model.joint import JointKind
 from mbsd.model.mechanism import Model
 from mbsd.results.solution import Solution
+
+# All numbers and texts within a result, by name.
+
 
 ARRAYS = ("t", "q", "v", "a", "lam", "wrench", "drives", "margin", "work", "held")
 
@@ -62,3 +66,14 @@ def _of_solution(sol: Solution, name: str) -> Iterator[tuple[str, np.ndarray | s
         for of in names:
             yield from contents(view(of), f"{name}.{kind}.{of}")
     yield from contents((sol.energy.kinetic, sol.energy.potential), f"{name}.energy")
+
+
+# A hash of the raw bytes of what the solver gives.
+
+
+def digest(result: Any) -> str:
+    """Hash of all numbers of a result, by name; texts count too."""
+    whole = hashlib.sha256()
+    for name, value in contents(result):
+        whole.update(name.encode() + b"\0" + (value.encode() if isinstance(value, str) else value.tobytes()))
+    return whole.hexdigest()[:16]

@@ -10,7 +10,7 @@ import numpy as np
 
 from mbsd import Mechanism
 from mbsd.kinematics.design_sweeps import DesignSweeps, Moved, in_closed_form
-from mbsd.kinematics.prepare import prepare
+from mbsd.kinematics.prepared import prepare
 from tools.models.assur_models import MODELS
 
 INTERVAL = 0.3

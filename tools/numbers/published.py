@@ -1,16 +1,22 @@
-"""The tests of published cases, run with an eye on what the solver gives them."""
+"""Runs of the gallery, and of the tests of published cases with an eye on what the solver gives them."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from functools import wraps
+from functools import partial, wraps
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from mbsd import Mechanism
+from mechanisms.stages.loading import loading
+from mechanisms.stages.solve import solving
+from shared.stage.paths import mechanism_names
+
+# The tests of published cases, run with an eye on what the solver gives them.
+
 
 TESTS = Path(__file__).resolve().parent.parent.parent / "tests"
 FILES = "test_reference*.py"
@@ -62,3 +68,17 @@ def published(only: str, measure: Callable[[Any], Any]) -> Iterator[tuple[str, A
         for name, method in kept.items():
             setattr(Mechanism, name, method)
     yield from watch.noted.items()
+
+
+# The motion of every mechanism in mechanisms/, as its film shows it.
+
+
+def runs() -> Iterator[tuple[str, Callable[[], Any]]]:
+    """By name."""
+    for name in mechanism_names():
+        yield f"gallery {name}", partial(_motion, name)
+
+
+def _motion(name: str) -> Any:
+    module, p = loading.load(name, "mechanism"), loading.params(name)
+    return solving.motion_of(name, module, solving.build(name, module, p), p)

@@ -1,6 +1,6 @@
 """Runs by name: every kind, every integrator, both formulations, and each analysis; a result each.
 
-Closed forms, the gallery and the published cases come on top (groups.py, gallery.py, published.py).
+Closed forms, the gallery and the published cases come on top (groups.py, blocks.py, published.py).
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from benchmarks.dynamics.cases import case
 from mbsd import Mechanism, constant_rate, harmonic
 from mbsd.dynamics.integrators.kind import INTEGRATORS
 from mbsd.kinematics.march import kinematics_at
-from mbsd.kinematics.prepare import prepare
+from mbsd.kinematics.prepared import prepare
 from mbsd.model.force import FORCE_KINDS
 from mbsd.model.joint import CONTACT_KINDS, KINDS
-from tools.documents.integrators.mechanisms import four_bar, pendulum
+from tools.documents.integrators import four_bar, pendulum
 
 Run = Callable[[], Any]
 FORMULATIONS = ("independent", "reference")

@@ -1,4 +1,4 @@
-"""What a built site must keep: links that lead somewhere, nothing loaded from a network."""
+"""Checks of a built site: links lead somewhere, and nothing is loaded from a network."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def faults(site: Path) -> list[str]:
 
 
 def _fault(site: Path, page: Path, tag: str, name: str, link: str) -> str:
-    """What is wrong with one link, or nothing."""
+    """Return what is wrong with one link; empty if nothing."""
     parts = urlsplit(link)
     if parts.scheme in ("data", "mailto", "javascript"):
         return ""

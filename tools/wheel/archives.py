@@ -30,7 +30,7 @@ def build(root: Path, out: Path) -> list[Path]:
     """The sdist and the wheel of the clone ``root``, written to ``out``."""
     with _unpacked(root) as (sdist, sources):
         wheel = _backend("build_wheel", sources)
-        return [_put(file, out) for file in (sdist, wheel)]
+        return [_move(file, out) for file in (sdist, wheel)]
 
 
 def build_with_kernels(
@@ -46,7 +46,7 @@ def build_with_kernels(
         fill(kernels, sources, python)
         (kernels / "made_for.json").write_text(_described(python, sources))
         settings = {"--build-option": [f"--plat-name={_platform()}"]}
-        return _put(_backend("build_wheel", sources, settings, python), out)
+        return _move(_backend("build_wheel", sources, settings, python), out)
 
 
 @contextmanager
@@ -83,7 +83,7 @@ def _settle(sdist: Path) -> None:
 
 def _described(python: Path, sources: Path) -> str:
     """Return what code compiled by this Python depends on, as JSON."""
-    code = "import json; from mbsd.compiling.shipped_kernels import here; print(json.dumps(here(), indent=1))"
+    code = "import json; from mbsd.compiling.kernel_files import here; print(json.dumps(here(), indent=1))"
     environment = os.environ | {"PYTHONPATH": str(sources)}
     return subprocess.run([str(python), "-c", code], env=environment, check=True, capture_output=True, text=True).stdout
 
@@ -113,6 +113,6 @@ def _platform() -> str:
     return next(line.rpartition("-")[2] for line in lines if line.startswith("Tag: "))
 
 
-def _put(file: Path, out: Path) -> Path:
+def _move(file: Path, out: Path) -> Path:
     write_bytes(out / file.name, file.read_bytes())
     return out / file.name

@@ -60,7 +60,7 @@ class FreeTangents:
     def __init__(self, terms: Terms, stretch: Stretch, every: list[Variants]) -> None:
         self.terms, self.along, self.rows, self.every = terms, stretch.along, stretch.rows, every
         self.dependent, self.asked, self.compact = stretch.dependent, stretch.asked, stretch.compact
-        self.nodes, self.solved = stretch.nodes, stretch.solved
+        self.nodes, self.solved, self.own = stretch.nodes, stretch.solved, stretch.own
         packed = terms.packed
         refuse_large(terms, len(self.along.t))
         self.scale = packed.column_scale()
@@ -122,6 +122,7 @@ class _Piece:
         at = slice(first, first + len(inverse))
         self.terms, self.every, self.rows, self.dependent = whole.terms, whole.every, whole.rows, whole.dependent
         self.along, self.basis = whole.along.take(at), basis
+        self.own = None if whole.own is None else whole.own.each(lambda part: part[:, at])
         self.compact = whole.compact[at]
         asked = whole.asked[at].copy()
         asked[0] &= first == 0
@@ -256,6 +257,8 @@ class _Piece:
 
     def _own(self, at: slice) -> Left:
         """How the equations change with the numbers at some nodes of the held motion."""
+        if self.own is not None:
+            return self.own.each(lambda part: part[:, at])
         return by_numbers(self.terms, self.along.take(at), self.every, self.compact[at])
 
     def _first(self, begun: np.ndarray, own: Left) -> np.ndarray:

@@ -22,8 +22,8 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import ModelError
 from mbsd.derivatives.driven.tangents import along_direction, per_scales
-from mbsd.derivatives.numbers.terms import Along, Terms
-from mbsd.derivatives.numbers.variants import SECOND, Variant, Variants
+from mbsd.derivatives.numbers.terms import Along, Left, Terms
+from mbsd.derivatives.numbers.variants import SECOND, Variants
 from mbsd.dynamics.events.moment import Moment
 from mbsd.model.event import Happening
 from mbsd.model.joint import ContactKind, Joint
@@ -68,6 +68,8 @@ class End:
     """(P, m) lam'."""
     pace: np.ndarray
     """(m,) how fast multipliers of the motion itself change (1/s)."""
+    changes: Left
+    """How the equations change with the numbers at the held motion, (P, 2, m): at its first and last node."""
 
 
 def guards_of(packed: Packed, along: Along, row: int, struck: Sequence[str]) -> list[Guard]:
@@ -209,7 +211,7 @@ def _changes(
     else:
         change = rates_along(terms, here, tangent.q, tangent.v)[:, row]
         pace = float(terms.left(here).acceleration[0, row])
-    return change + _by_numbers(every, here, part, row), pace, unit
+    return change + getattr(tangent.changes, part)[:, -1, row], pace, unit
 
 
 def rates_along(terms: Terms, here: Along, q: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -220,15 +222,6 @@ def rates_along(terms: Terms, here: Along, q: np.ndarray, v: np.ndarray) -> np.n
             for dq, dv in zip(q, v, strict=True)
         ]
     )
-
-
-def _by_numbers(every: Sequence[Variants], here: Along, part: str, row: int) -> np.ndarray:
-    """(P,) how what is left over changes with each number at the held state."""
-
-    def left(variant: Variant) -> np.ndarray:
-        return getattr(variant.terms.left(here), part)[0, row]
-
-    return np.array([0.0 if v.variants[0].same_places else float(v.slope(left)) for v in every])
 
 
 def _changes_of_friction(
@@ -303,11 +296,12 @@ def _changes_of_user(
 
 
 def refuse_contact_at_start(
-    terms: Terms, every: Sequence[Variants], along: Along, q: np.ndarray, v: np.ndarray, events: Sequence[Happening]
-) -> None:
+    terms: Terms, every: Sequence[Variants], along: Along, q: np.ndarray, v: np.ndarray, changes: Left,
+    events: Sequence[Happening],
+) -> None:  # fmt: skip
     """Raise ModelError for a number that moves a contact which is closed at the start, and for an impact there.
 
-    ``q`` and ``v`` (P, 3 nb) are q' and v' at the start of a motion with ``events``.
+    ``q`` and ``v`` (P, 3 nb) are q' and v' at the start of a motion with ``events``; ``changes``: as those of End.
     """
     packed, here, scale = terms.packed, along.take(slice(0, 1)), terms.packed.row_scale()
     struck = next((event.name for event in events if event.what == "impact" and event.time <= along.t[0]), None)
@@ -322,10 +316,10 @@ def refuse_contact_at_start(
         gap = packed.rows_of(k).start
         if not here.held[0, gap]:
             continue
-        moved = q[:, 3:] @ packed.spread(terms.rows(here)[2])[0, gap] + _by_numbers(every, here, "position", gap)
+        moved = q[:, 3:] @ packed.spread(terms.rows(here)[2])[0, gap] + changes.position[:, 0, gap]
         if rates is None:
             rates = rates_along(terms, here, q, v)
-        faster = rates[:, gap] + _by_numbers(every, here, "velocity", gap)
+        faster = rates[:, gap] + changes.velocity[:, 0, gap]
         for p, variants in enumerate(every):
             leaves = not joint.kind.always_closed and abs(moved[p]) * scale[gap] * variants.size > ALIKE
             hastens = abs(faster[p]) * scale[gap] * variants.size > ALIKE * fastest

@@ -19,7 +19,7 @@ from mbsd.arrays.packing import Packed
 from mbsd.arrays.relative import FIRST_OWN
 from mbsd.derivatives.numbers.terms import Along, Terms
 from mbsd.derivatives.numbers.variants import Variants
-from mbsd.equations.constraints.relative import AT
+from mbsd.equations.relative.equation import AT
 from mbsd.model.event import Event
 from mbsd.model.mechanism import Model
 from mbsd.results.solution import Solution

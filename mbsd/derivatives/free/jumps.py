@@ -11,8 +11,8 @@ Leine, Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems (20
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
@@ -22,7 +22,7 @@ from mbsd.derivatives.driven.tangents import per_scales
 from mbsd.derivatives.free.guards import USER, End, Guard, guards_of, times_moved
 from mbsd.derivatives.free.indexing import is_index
 from mbsd.derivatives.numbers.terms import Along, Terms
-from mbsd.derivatives.numbers.variants import Variants, Variation
+from mbsd.derivatives.numbers.variants import Variant, Variants, Variation
 from mbsd.dynamics.events.arrays import TOUCHING
 from mbsd.dynamics.events.jumps import strike
 from mbsd.dynamics.events.packing import contacts_of
@@ -80,6 +80,9 @@ class Jump:
     impacts: list[str]
     guards: list[Guard]
     ends: bool
+    plain: Plain | None = None
+    by_numbers: dict[int, np.ndarray] = field(default_factory=dict)
+    """(3 nb,) how velocities after the impact change with some numbers, at the held state before it."""
 
     def across(self, tangent: End) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """q', v' (P, 3 nb) after it, and how its time changes (P,) (s by the numbers); from those before it."""
@@ -99,40 +102,43 @@ class Jump:
         per_size, per_speed = per_scales(whole.terms, along)
         far = np.maximum(np.abs(dq * per_size).max(axis=1), np.abs(dv * per_size).max(axis=1) * per_speed)
         h = (REACH / np.where(far > 0.0, far, 1.0))[:, None]
-        t, q, v = along.t[k] + 0.0 * dt, along.q[k], along.v[k]
-        plain = self._plain()
+        t, q, v, plain = along.t[k] + 0.0 * dt, along.q[k], along.v[k], self.plain
         both = []
         for sign in (1.0, -1.0):
             state = t + sign * h[:, 0] * dt, q + sign * h * dq, v + sign * h * dv
             if plain is None:
                 both.append(np.array([self._after(whole.ready(), *single) for single in zip(*state, strict=True)]))
             else:
-                both.append(self._bounced(whole.terms, plain, *state, plain.restitution))
+                both.append(bounced(whole.terms, plain, *state, plain.restitution))
         out = (both[0] - both[1]) / (2 * h)
         for p, variants in enumerate(whole.variants):
-            first = variants.variants[0]
-            if not (first.same_places and first.same_masses) or self._law_changes(variants):
-                out[p] += self._by_number(variants, plain, t[:1], q[None], v[None])
+            if p in self.by_numbers:
+                out[p] += self.by_numbers[p]
+            elif plain is None and self.changes_with(variants):
+                out[p] += self._by_number(variants, float(t[0]), q, v)
         return out
 
-    def _by_number(self, variants: Variants, plain: Plain | None, t: Any, q: Any, v: Any) -> np.ndarray:
-        """(3 nb,) the same by a number at a held state."""
-        whole, total = self.whole, np.zeros(q.shape[1])
+    def changes_with(self, variants: Variants) -> bool:
+        """Return True if a number changes the law of the impact, or places or masses that it depends on."""
+        first, mine = variants.variants[0], self.whole.terms.packed
+        if not (first.same_places and first.same_masses):
+            return True
+        pairs = zip(mine.joints, first.terms.packed.joints, strict=True)
+        return any(dict(a.params) != dict(b.params) for a, b in pairs if a.name in self.impacts)
+
+    def _by_number(self, variants: Variants, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """(3 nb,) the same by a number at a held state, by the law of the simulation itself."""
+        whole, total = self.whole, np.zeros(len(q))
         for variant, weight in zip(variants.variants, variants.weights, strict=True):
-            if plain is not None:
-                own = float(variant.terms.packed.joints[plain.joint].params.get("restitution", 0.0))
-                bounce = own if plain.restitution else 0.0
-                total += weight * self._bounced(variant.terms, plain, t, q, v, bounce)[0]
-                continue
             value = variants.number.value + variant.offset * variants.step
             with with_value(whole.variation.work, variants.number, value, whole.variation.saved) as m:
                 other = prepare_dynamics(m, *whole.span, contacts=True)
             take = other.packed
             take.system = take.system.changed(angle_offset=variant.terms.packed.system.angle_offset)
-            total += weight * self._after(other, float(t[0]), q[0], v[0])
+            total += weight * self._after(other, t, q, v)
         return total / variants.step
 
-    def _plain(self) -> Plain | None:
+    def plain_law(self) -> Plain | None:
         """Return what the law needs where a single contact without friction is struck."""
         packed = self.whole.terms.packed
         assert self.along.held is not None
@@ -154,36 +160,54 @@ class Jump:
         rows = self.whole.stretch_rows(self.along, self.before)
         return Plain(joint, row, rows, float(params.get("restitution", 0.0)) if bounced else 0.0)
 
-    def _bounced(
-        self, terms: Any, plain: Plain, t: np.ndarray, q: np.ndarray, v: np.ndarray, restitution: float
-    ) -> np.ndarray:
-        """(S, 3 nb) velocities after, v - a (1 + e) J v / (J a), a: what an impulse along J makes of velocities."""
-        state = Along(t, q, v, v, np.zeros((len(t), len(terms.packed.ws.phi))))
-        jac = terms.packed.spread(terms.rows(state)[2])
-        rows, n, count = jac[:, plain.rows], jac.shape[2], len(plain.rows)
-        matrix = np.zeros((len(t), n + count, n + count))
-        matrix[:, :n, :n] = np.diag(terms.inertia[3:])
-        matrix[:, :n, n:], matrix[:, n:, :n] = rows.transpose(0, 2, 1), rows
-        push = np.zeros((len(t), n + count, 1))
-        push[:, :n, 0] = jac[:, plain.row]
-        answer = np.linalg.solve(matrix, push)[:, :n, 0]
-        rate = (jac[:, plain.row] * v[:, 3:]).sum(axis=1)
-        size = (1.0 + restitution) * rate / (jac[:, plain.row] * answer).sum(axis=1)
-        out = v.copy()
-        out[:, 3:] -= size[:, None] * answer
-        return out
-
-    def _law_changes(self, variants: Variants) -> bool:
-        mine, other = self.whole.terms.packed, variants.variants[0].terms.packed
-        return any(
-            dict(a.params) != dict(b.params)
-            for a, b in zip(mine.joints, other.joints, strict=True)
-            if a.name in self.impacts
-        )
-
     def _after(self, ready: Any, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         """(3 nb,) velocities after the impacts of this event."""
         return velocities_after(ready, t, q, v, self.impacts)
+
+
+def fill_by_numbers(whole: Whole, along: Along, jumps: Sequence[Jump]) -> None:
+    """Find how plain impacts change with each number at the held states before them, all alike ones at once."""
+    alike: dict[tuple[Any, ...], list[Jump]] = {}
+    for jump in jumps:
+        jump.plain = plain = jump.plain_law() if jump.impacts else None
+        if plain is not None:
+            alike.setdefault((plain.joint, plain.rows.tobytes(), plain.restitution), []).append(jump)
+    for own in alike.values():
+        plain, rows = own[0].plain, [jump.before for jump in own]
+        assert plain is not None
+        t, q, v = along.t[rows], along.q[rows], along.v[rows]
+        for p, variants in enumerate(whole.variants):
+            if own[0].changes_with(variants):
+                every = zip(variants.variants, variants.weights, strict=True)
+                slope = (
+                    sum(weight * _bounced_with(variant, plain, t, q, v) for variant, weight in every) / variants.step
+                )
+                for jump, part in zip(own, slope, strict=True):
+                    jump.by_numbers[p] = part
+
+
+def _bounced_with(variant: Variant, plain: Plain, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """(S, 3 nb) velocities after an impact of a variant."""
+    restitution = float(variant.terms.packed.joints[plain.joint].params.get("restitution", 0.0))
+    return bounced(variant.terms, plain, t, q, v, restitution if plain.restitution else 0.0)
+
+
+def bounced(terms: Terms, plain: Plain, t: np.ndarray, q: np.ndarray, v: np.ndarray, restitution: float) -> np.ndarray:
+    """(S, 3 nb) velocities after, v - a (1 + e) J v / (J a), a: what an impulse along J makes of velocities."""
+    state = Along(t, q, v, v, np.zeros((len(t), len(terms.packed.ws.phi))))
+    jac = terms.packed.spread(terms.rows(state)[2])
+    rows, n, count = jac[:, plain.rows], jac.shape[2], len(plain.rows)
+    matrix = np.zeros((len(t), n + count, n + count))
+    matrix[:, :n, :n] = np.diag(terms.inertia[3:])
+    matrix[:, :n, n:], matrix[:, n:, :n] = rows.transpose(0, 2, 1), rows
+    push = np.zeros((len(t), n + count, 1))
+    push[:, :n, 0] = jac[:, plain.row]
+    answer = np.linalg.solve(matrix, push)[:, :n, 0]
+    rate = (jac[:, plain.row] * v[:, 3:]).sum(axis=1)
+    size = (1.0 + restitution) * rate / (jac[:, plain.row] * answer).sum(axis=1)
+    out = v.copy()
+    out[:, 3:] -= size[:, None] * answer
+    return out
 
 
 def jumps_of(whole: Whole, sol: Solution, along: Along, edges: list[int]) -> list[Jump]:
@@ -191,6 +215,7 @@ def jumps_of(whole: Whole, sol: Solution, along: Along, edges: list[int]) -> lis
     out = [_jump(whole, sol, along, edge - 1, ends=False) for edge in edges[1:-1]]
     if sol.events and sol.events[-1].what == "end":
         out.append(_jump(whole, sol, along, len(along.t) - 1, ends=True))
+    fill_by_numbers(whole, along, out)
     return out
 
 

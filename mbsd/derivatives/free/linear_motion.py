@@ -16,7 +16,7 @@ from numpy.polynomial import legendre
 from scipy.special import roots_jacobi
 
 from mbsd.compiling.jit import internal, kernel
-from mbsd.equations.gauss import eliminate
+from mbsd.equations.products import eliminate
 
 NODES = 8
 """Nodes of a step, without its end."""

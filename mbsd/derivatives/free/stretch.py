@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.derivatives.numbers.terms import Along
+from mbsd.derivatives.numbers.terms import Along, Left
 
 
 @dataclass
@@ -26,6 +26,8 @@ class Stretch:
     """(T,) whether it is one of the nodes of whole steps, the first and the last among them."""
     solved: bool = True
     """Whether accelerations and multipliers are known; else accelerations are about what they will be."""
+    own: Left | None = None
+    """How the equations change with P numbers at the held motion, (P, T, ...), where that is known."""
 
 
 @dataclass

@@ -14,19 +14,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mbsd.arrays.approaches import approached_along
 from mbsd.arrays.curve_branches import tabulate_along
 from mbsd.arrays.friction_along import friction_along
 from mbsd.arrays.inertias import inertia_of, weight_of
 from mbsd.arrays.laws import compiled_laws
-from mbsd.arrays.loads import pack_loads
-from mbsd.arrays.loads_along import loads_along
+from mbsd.arrays.loads import approached_along, loads_along, pack_loads
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import times_compact
 from mbsd.dynamics.switches import standing
 from mbsd.equations.laws import Laws
-from mbsd.equations.left_over import leave
 from mbsd.equations.loads import Loads
+from mbsd.equations.products import leave
 
 
 @dataclass

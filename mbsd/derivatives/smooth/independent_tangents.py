@@ -30,7 +30,7 @@ from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.repeated import Course, Outputs
 from mbsd.dynamics.runs.embedding import Embedded, begin_at, embedded_at_start, embedding_scratch
 from mbsd.kinematics.groups.blocks import BLOCK
-from mbsd.kinematics.groups.carrying.columns import INERTIA, MASS, THETA
+from mbsd.kinematics.groups.carried import INERTIA, MASS, THETA
 from mbsd.kinematics.groups.groups import KIND
 from mbsd.model.body import Marker
 

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from mbsd.compiling.jit import internal, kernel
 from mbsd.dynamics.independent.equations import accelerate, evaluate, place_all, settle
-from mbsd.kinematics.groups.carrying.columns import BASE, NEAR, THETA
+from mbsd.kinematics.groups.carried import BASE, NEAR, THETA
 
 FIRST = 3
 """Entries of a state before its coordinates."""

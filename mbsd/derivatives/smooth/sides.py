@@ -21,7 +21,7 @@ from mbsd.dynamics.independent.arrays import Embedding
 from mbsd.dynamics.independent.coordinates import choices
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.runs.embedding import Embedded
-from mbsd.kinematics.groups.carrying.columns import AVOID, SIGN
+from mbsd.kinematics.groups.carried import AVOID, SIGN
 from mbsd.kinematics.groups.groups import KIND
 from mbsd.kinematics.groups.tables import rows_of
 from mbsd.model.mechanism import Model

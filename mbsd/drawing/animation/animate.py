@@ -8,10 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from mbsd.base.arguments import finite_number
+from mbsd.base.arguments import finite_number, users_progress
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such, shown
-from mbsd.base.users_function import users_progress
 from mbsd.drawing.animation.clip import HOLD, clip_of
 from mbsd.drawing.animation.encoders import ffmpeg, held, write_gif, write_mp4
 from mbsd.drawing.animation.page import Page

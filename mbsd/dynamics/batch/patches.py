@@ -29,7 +29,7 @@ from mbsd.dynamics.independent.block import KEPT_Q, KEPT_SIZE
 from mbsd.dynamics.independent.coordinates import coordinates_along
 from mbsd.dynamics.prepare.inertia import USUAL
 from mbsd.dynamics.prepare.refusals import presses
-from mbsd.kinematics.groups.carrying.columns import BASE, INERTIA, MASS, THETA
+from mbsd.kinematics.groups.carried import BASE, INERTIA, MASS, THETA
 from mbsd.model.body import rod_inertia
 from mbsd.model.laws import Motion
 from mbsd.model.laws.numbers import Compiled

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from mbsd.compiling.jit import internal, threaded
+from mbsd.compiling.jit import inlined, internal, threaded
 from mbsd.dynamics.events.loop import NOT_SOLVED, OVER, go_on
-from mbsd.dynamics.formulation import derivative
+from mbsd.dynamics.formulation import derivative, observe
 from mbsd.dynamics.genevas import index
 from mbsd.dynamics.integrators.advance import advance_past_jumps
 from mbsd.dynamics.repeated_rows import again, opens
@@ -104,14 +104,14 @@ def take_up(state, block, kept, counts):
     return kept[block.shape[0]]
 
 
-@internal
-def still_open(passed, y, since, count, unmet):
+@inlined
+def still_open(dyn, passed, y, since, count, unmet):
     """Bits of thresholds ``passed`` (k, 4) that outputs ``since`` to ``count`` (left out) of y leave unmet."""
     for at in range(since, count):
         if unmet == 0:
             break
         for k in range(passed.shape[0]):
-            value = y[at, int(passed[k, 0]), int(passed[k, 1])]
+            value = observe(dyn, y[at], int(passed[k, 0]), int(passed[k, 1]))
             if (value < passed[k, 2]) if passed[k, 3] > 0.0 else (value > passed[k, 2]):
                 unmet &= ~(1 << k)
     return unmet
@@ -193,7 +193,7 @@ def run_rows(dyn, scratch, state, settings, contacts, genevas, numbers, course, 
                 if not scratch.report[0] > course.near * widest:
                     ended = NEARLY_SINGULAR
             if passed.shape[0] > 0 and ended == PAUSED:
-                unmet = still_open(passed, out.y, written, state.count[NEXT], unmet)
+                unmet = still_open(dyn, passed, out.y, written, state.count[NEXT], unmet)
                 if unmet == 0 and state.count[NEXT] >= target.least:
                     ended = KNOWN
         if ended == OVER:

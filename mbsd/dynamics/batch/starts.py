@@ -18,8 +18,8 @@ import numpy as np
 
 from mbsd.arrays.inertias import inertia_of, least_energy, usual_inertia
 from mbsd.arrays.packing import pack
+from mbsd.base.arguments import described
 from mbsd.base.errors import ModelError
-from mbsd.base.users_function import described
 from mbsd.dynamics.batch.designs import Designs
 from mbsd.dynamics.batch.single_run import Base
 from mbsd.equations.assembly import tabulate

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from mbsd.arrays.packing import Packed
+from mbsd.base.arguments import described
 from mbsd.base.errors import MechanismError
 from mbsd.base.running import stops_when
-from mbsd.base.users_function import described
 from mbsd.dynamics.batch.block import content
 from mbsd.dynamics.batch.designs import Built
 from mbsd.dynamics.batch.loop import MOST_STEPS, Loop, Work

@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.arrays.states import own_states, states_of
-from mbsd.base.arguments import LARGEST
+from mbsd.base.arguments import LARGEST, described
 from mbsd.base.errors import ModelError
 from mbsd.base.names import Suggesting, no_such, shown
-from mbsd.base.users_function import described
 from mbsd.compiling.callback import as_numbers
 from mbsd.model.body import Marker, at_end, finite_number
 from mbsd.model.event import Event

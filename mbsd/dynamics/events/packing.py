@@ -30,11 +30,11 @@ from mbsd.dynamics.reference.schur import Schur, elimination_sequence
 from mbsd.dynamics.reference.sliding import sliding_for
 from mbsd.dynamics.state import State
 from mbsd.dynamics.switches import RunContact
-from mbsd.equations.constraints.relative import AT, MARKER_I, MARKER_J
-from mbsd.equations.constraints.relative import ROW as RELATIVE_ROW
 from mbsd.equations.joint_friction import FIRST
+from mbsd.equations.relative.equation import AT, MARKER_I, MARKER_J
+from mbsd.equations.relative.equation import ROW as RELATIVE_ROW
 from mbsd.kinematics.limits.free_wheels import HALF, MET
-from mbsd.kinematics.pose import mobility
+from mbsd.kinematics.pose import held_values, mobility
 from mbsd.model.body import Marker
 from mbsd.model.event import Event, Reaching
 from mbsd.model.teeth import with_radii
@@ -409,7 +409,7 @@ def repeated_of(ready: PreparedDynamics) -> repeated_rows.Repeated:
     number[:, repeated_rows.SCALE] = [scale[row] for row in rows]
     number[:, repeated_rows.UNTIL] = np.inf
     clock = np.zeros(repeated_rows.FOLLOWS + 1)
-    clock[repeated_rows.FOLLOWS] = mobility.RANK_TOLERANCE
+    clock[repeated_rows.FOLLOWS] = held_values.RANK_TOLERANCE
     clock[repeated_rows.BETTER] = WORN if len(ready.dynamics.loads.friction) else mobility.BETTER
     return repeated_rows.Repeated(
         np.array([(row, *switches.place[row]) for row in rows], np.int64).reshape(-1, 3),

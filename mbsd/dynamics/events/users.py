@@ -2,7 +2,9 @@
 
 Functions get positions and rates of frames. An event is noted, ends the simulation, changes velocities, or releases
 joints. Rows of J of a released joint hold no more, for good, and it has no friction;
-rows that repeat them hold instead.
+rows that repeat them hold instead. What functions get is chosen by the class of the arrays, so that it costs nothing: a
+formulation with other coordinates brings its own class, and adds its kernels by ``read_frames.add`` and
+``move_frames.add``.
 """
 
 from __future__ import annotations
@@ -10,6 +12,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.callback import SIGNATURE, call
 from mbsd.compiling.jit import apart, at_address, internal, lazy
 from mbsd.dynamics import repeated_rows
@@ -86,7 +89,7 @@ class Events(NamedTuple):
 
 
 @internal
-def read_frames(events, first, count, q, v):
+def _read_frames(events, first, count, q, v):
     """Fill events.inputs with places and rates of frames at q, v (3 nb,), as events/moment.py gives them.
 
     With a count of WHOLE they are q and v themselves.
@@ -112,6 +115,21 @@ def read_frames(events, first, count, q, v):
         inputs[at] = v[b] - v[b + 2] * y
         inputs[at + 1] = v[b + 1] + v[b + 2] * x
         inputs[at + 2] = v[b + 2]
+
+
+@internal
+def _move_frames(events, first, count, q, v):
+    """Let v (3 nb,) at q be such that frames move by events.outputs, where they stand at events.inputs."""
+    for i in range(count):
+        b = 3 * events.body[first + i]
+        omega = events.outputs[3 * i + 2]
+        v[b] = events.outputs[3 * i] + omega * (events.inputs[3 * i + 1] - q[b + 1])
+        v[b + 1] = events.outputs[3 * i + 1] - omega * (events.inputs[3 * i] - q[b])
+        v[b + 2] = omega
+
+
+read_frames = alternatives({}, _read_frames)
+move_frames = alternatives({}, _move_frames)
 
 
 @apart
@@ -290,6 +308,16 @@ PASSED, HAPPENED, ENDED, ACTS = range(4)
 """It passed zero the other way; it happened; the simulation ends there; it happens once its Python action has acted."""
 
 
+@internal
+def _act(events, e, t, q, v):
+    """Let the compiled action of event e change v (n,)."""
+    first = events.table[e, ACTION_FIRST]
+    count = events.table[e, ACTION_FRAMES]
+    read_frames(events, first, count, q, v)
+    call(events.table[e, ACTION], t, events.inputs, events.outputs)  # pyright: ignore[reportCallIssue]
+    move_frames(events, first, count, q, v)
+
+
 @lazy(int)
 def happen(dyn, scratch, contacts, state, e):
     """Let event e happen at a state, whose function has just passed zero there."""
@@ -306,20 +334,8 @@ def happen(dyn, scratch, contacts, state, e):
     releases = False
     for k in range(events.release.shape[0]):
         releases = releases or events.release[k, GROUP] == e
-    v = state.y[1]
     if table[e, ACTION] != 0:
-        first = table[e, ACTION_FIRST]
-        count = table[e, ACTION_FRAMES]
-        read_frames(events, first, count, state.y[0], v)
-        call(table[e, ACTION], state.clock[TIME], events.inputs, events.outputs)  # pyright: ignore[reportCallIssue]
-        for i in range(count):
-            b = 3 * events.body[first + i]
-            x = events.inputs[3 * i] - state.y[0, b]
-            y = events.inputs[3 * i + 1] - state.y[0, b + 1]
-            omega = events.outputs[3 * i + 2]
-            v[b] = events.outputs[3 * i] + omega * y
-            v[b + 1] = events.outputs[3 * i + 1] - omega * x
-            v[b + 2] = omega
+        _act(events, e, state.clock[TIME], state.y[0], state.y[1])
     if releases:
         release_joints(dyn, scratch, contacts, e, state.clock[TIME], state.y[0])
     if releases or table[e, ACTION] != 0:

@@ -21,22 +21,19 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from mbsd.compiling.jit import inlined, lazy
-from mbsd.compiling.views import table
-from mbsd.kinematics.groups.blocks import ARM, BODY, LARGEST, MOTION, SIZE
-from mbsd.kinematics.groups.carrying.branch import angle_of, predicted
-from mbsd.kinematics.groups.carrying.columns import BASE, COS, INERTIA, MASS, OMEGA, SIN, SPEED, VALUE, X, Y
-from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
+from mbsd.compiling.jit import inlined, lazy, merged
+from mbsd.compiling.kernel_arguments import table
+from mbsd.kinematics.groups.blocks import ARM, BODY, LARGEST, MOTION, SIZE, Block, Motion, Work
+from mbsd.kinematics.groups.carried import BASE, COS, DOUBTED, INERTIA, MASS, OMEGA, SIN, SOLVED, SPEED, VALUE, X, Y
+from mbsd.kinematics.groups.cases import angle_of, predicted
 from mbsd.kinematics.groups.kinds.train import UNSURE
-from mbsd.kinematics.groups.newton.fused import fused
-from mbsd.kinematics.groups.newton.iteration import correction, iterate
+from mbsd.kinematics.groups.newton.block import correction, iterate
 from mbsd.kinematics.groups.newton.matrix import extent, held, solve
-from mbsd.kinematics.groups.newton.records import Block, Motion, Work
 from mbsd.kinematics.groups.newton.rows import bend_of, move, read_unknowns
 from mbsd.kinematics.newton import ROUNDING, SHRINKS, SUSPICIOUS
 
 if TYPE_CHECKING:
-    from mbsd.kinematics.groups.block_tables import Tables
+    from mbsd.kinematics.groups.parts import Tables
 
 
 (
@@ -70,7 +67,7 @@ class Past(NamedTuple):
     """The determinant of G at the last accepted pose; 0 at the first."""
 
 
-@fused
+@merged
 def expected(numbers, seen, coordinate, since):
     """An unknown by its value, convective acceleration and columns ``numbers`` (C + 2,) at coordinates ``seen`` (C,).
 
@@ -82,7 +79,7 @@ def expected(numbers, seen, coordinate, since):
     return value
 
 
-@fused
+@merged
 def expected_since(numbers, coordinate):
     """The same from the last accepted pose on."""
     since = coordinate[coordinate.shape[0] - 1, VALUE]
@@ -92,7 +89,7 @@ def expected_since(numbers, coordinate):
     return value
 
 
-@fused
+@merged
 def place_coupled(block, motion, work, past, coordinate, drive, step, now):
     """Place the bodies; ``work`` takes the factors of G. Returns its determinant, or 0 where the pose is doubted.
 
@@ -131,7 +128,7 @@ def place_coupled(block, motion, work, past, coordinate, drive, step, now):
     return 0.0
 
 
-@fused
+@merged
 def move_coupled(block, motion, work, here, rate, coordinate, drive):
     """Columns of B and convective accelerations of the bodies that ``place_coupled`` has placed."""
     columns = coordinate.shape[0] - 1
@@ -203,7 +200,7 @@ def with_body(body, rate, gravity, i, total, push):
     return total, push - inertia * omega * rate[i, 5]
 
 
-@fused
+@merged
 def take_near(near, body, base, coordinate, q, last, turn, per_metre):
     """Poses of the known bodies beside; returns how far they went since the last accepted pose, or -1 for doubt."""
     step = 0.0

@@ -25,9 +25,8 @@ from mbsd.dynamics.independent.groups import bridge, embed_groups
 from mbsd.dynamics.state import NEXT, TIME, WORK
 from mbsd.equations.laws import evaluate_laws
 from mbsd.equations.loads import apply_loads
-from mbsd.kinematics.groups.carrying.branch import WIDE, angle_of
-from mbsd.kinematics.groups.carrying.columns import BASE, BEND, COS, NEAR, SIN, SINE, SPEED, THETA, TURNS, VALUE, X, Y
-from mbsd.kinematics.groups.carrying.rates import SOLVED
+from mbsd.kinematics.groups.carried import BASE, BEND, COS, NEAR, SIN, SINE, SOLVED, SPEED, THETA, TURNS, VALUE, X, Y
+from mbsd.kinematics.groups.cases import WIDE, angle_of
 
 FLOOR = 1e-14
 """Part of its diagonal that elimination must leave of M_z."""

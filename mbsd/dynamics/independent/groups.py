@@ -30,9 +30,7 @@ from mbsd.compiling.jit import inlined, internal, lazy
 from mbsd.dynamics.independent.block import embed_block, with_body
 from mbsd.equations.laws import evaluate_laws
 from mbsd.kinematics.groups.blocks import BLOCK, TRAIN
-from mbsd.kinematics.groups.carrying.branch import FLOOR, angle_of
-from mbsd.kinematics.groups.carrying.cases import PerCoordinate
-from mbsd.kinematics.groups.carrying.columns import (
+from mbsd.kinematics.groups.carried import (
     AVOID,
     BASE,
     BEND,
@@ -40,6 +38,7 @@ from mbsd.kinematics.groups.carrying.columns import (
     OMEGA,
     SIN,
     SINE,
+    SOLVED,
     SPEED,
     THETA,
     TURNS,
@@ -47,10 +46,10 @@ from mbsd.kinematics.groups.carrying.columns import (
     X,
     Y,
 )
-from mbsd.kinematics.groups.carrying.rates import SOLVED
+from mbsd.kinematics.groups.cases import FLOOR, PerCoordinate, angle_of
 from mbsd.kinematics.groups.groups import FIRST, K1, K2, KIND, LAW, SECOND
 from mbsd.kinematics.groups.kinds.train import embed_train
-from mbsd.kinematics.groups.solve_group import solve_group
+from mbsd.kinematics.groups.solve import solve_group
 
 
 @inlined

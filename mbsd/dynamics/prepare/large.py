@@ -19,12 +19,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from mbsd.arrays.force_phases import take_force_phases
 from mbsd.arrays.inertias import inertia_of, usual_inertia
 from mbsd.arrays.laws import pack_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
-from mbsd.arrays.start_state import copied
+from mbsd.arrays.starts import copied, take_force_phases
 from mbsd.base.errors import AssemblyError
 from mbsd.dynamics.reference.arrays import Dynamics, scratch_for
 from mbsd.dynamics.reference.projection import factor_at, project
@@ -38,11 +37,11 @@ from mbsd.kinematics.pose.close import (
     nearest_turn,
     rough_pose,
     unwind_angles,
+    why_open,
 )
 from mbsd.kinematics.pose.ideal_joints import closed_ideally
 from mbsd.kinematics.pose.initial import Initial, given_velocities, tell_coordinates
 from mbsd.kinematics.pose.mobility import joint_mobility
-from mbsd.kinematics.pose.open_loops import why_open
 from mbsd.kinematics.pose.phases import active_rows, let_phases_go, refuse_impossible, take_decided, take_phases
 from mbsd.model.mechanism import Model
 from mbsd.results.views import Mobility

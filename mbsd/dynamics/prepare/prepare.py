@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.arrays.chambers import check_pistons
-from mbsd.arrays.driver_laws import refuse_bad_laws
 from mbsd.arrays.inertias import inertia_of, usual_inertia, weight_of
-from mbsd.arrays.laws import compiled_laws, law_values
+from mbsd.arrays.laws import compiled_laws, law_values, refuse_bad_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
 from mbsd.arrays.states import columns_of, ones_of, widened, with_states
@@ -33,7 +32,7 @@ from mbsd.dynamics.reference.pins import with_pins
 from mbsd.dynamics.reference.schur import elimination_sequence
 from mbsd.dynamics.reference.sliding import sliding_for
 from mbsd.dynamics.switches import Switches, friction_rows, joint_sticks, stuck_rows
-from mbsd.kinematics.limits.contact_rows import all_contacts, with_contacts
+from mbsd.kinematics.limits.contacts import all_contacts, with_contacts
 from mbsd.kinematics.pose.initial import Initial, consistent
 from mbsd.kinematics.pose.mobility import joint_mobility, rows_at
 from mbsd.model.mechanism import Model

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mbsd.arrays.approaches import remembers
 from mbsd.arrays.curve_branches import CurveBranches
+from mbsd.arrays.loads import remembers
 from mbsd.arrays.packing import Packed
 from mbsd.compiling.jit import Often
 from mbsd.dynamics import state as run_state

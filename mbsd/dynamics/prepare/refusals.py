@@ -22,8 +22,7 @@ from typing import TYPE_CHECKING, NoReturn
 import numpy as np
 
 from mbsd.arrays.friction_along import friction_under
-from mbsd.arrays.loads import pack_loads
-from mbsd.arrays.loads_along import loads_along
+from mbsd.arrays.loads import loads_along, pack_loads
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import MechanismError, MobilityError, ModelError, SimulationError, SingularPoseError
 from mbsd.dynamics.formulation import derivative

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mbsd.arrays.law_jumps import LAW_STEP, disagreeing
+from mbsd.arrays.laws import LAW_STEP, disagreeing
 from mbsd.base.codes import CYCLOIDAL, PIECES
 from mbsd.base.errors import ModelError, ModelWarning
 from mbsd.dynamics.state import ACCEPTED, PAUSED, REACHED, STARTED, STEP, TIME, State

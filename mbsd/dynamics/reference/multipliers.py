@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbsd.arrays.approaches import stretches
 from mbsd.arrays.curve_branches import tabulate_along
+from mbsd.arrays.loads import stretches
 from mbsd.compiling.jit import kernel
 from mbsd.dynamics.reference.refinement import solve_balanced
 from mbsd.dynamics.reference.schur import factor_schur, schur_factors

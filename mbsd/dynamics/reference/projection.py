@@ -19,9 +19,9 @@ from mbsd.compiling.jit import apart, internal, kernel, merged, shared
 from mbsd.dynamics.reference.pins import change_by_pins, factor_pins
 from mbsd.dynamics.reference.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
 from mbsd.equations.assembly import evaluate_nu, evaluate_position, position
-from mbsd.equations.constraints.relative import rows as relative_rows
 from mbsd.equations.laws import evaluate_laws
-from mbsd.equations.markers import place
+from mbsd.equations.relative.equation import relative_rows
+from mbsd.equations.system import place
 
 OPENED_BY = 1e-7
 """Residuals (sizes, rad) above which a row that does not hold counts as open."""

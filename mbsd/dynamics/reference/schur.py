@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mbsd.base.kept import Kept
+from mbsd.base.running import Kept
 from mbsd.compiling.jit import inlined
 
 INDEX = np.uint32

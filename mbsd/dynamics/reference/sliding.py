@@ -22,7 +22,7 @@ import numpy as np
 from mbsd.compiling.jit import lazy
 from mbsd.dynamics.reference.projection import along, push
 from mbsd.dynamics.reference.refinement import respond
-from mbsd.equations.gauss import eliminate
+from mbsd.equations.products import eliminate
 
 
 class Sliding(NamedTuple):

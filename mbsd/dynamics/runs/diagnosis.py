@@ -25,7 +25,7 @@ import numpy as np
 
 from mbsd.arrays.directory import directory, slice_of
 from mbsd.arrays.friction_along import REMEDY, friction_under, jam
-from mbsd.arrays.loads_along import loads_along
+from mbsd.arrays.loads import loads_along
 from mbsd.base.errors import SimulationError
 from mbsd.dynamics import state as run_state
 from mbsd.dynamics.formulation import derivative

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.base.codes import LAW_VALUE, LINEAR, POWER, TURN
-from mbsd.base.kept import Kept
+from mbsd.base.running import Kept
 from mbsd.dynamics.independent.arrays import LIMIT, SENSITIVITY, Embedding, EmbeddingScratch
 from mbsd.dynamics.independent.block import KEPT_SIZE, block_arrays, block_work
 from mbsd.dynamics.independent.coordinates import MOST, Choice, Coordinate, choices, coordinates_along, coordinates_of
@@ -17,8 +17,8 @@ from mbsd.dynamics.independent.equations import look
 from mbsd.dynamics.independent.groups import KEPT
 from mbsd.dynamics.prepare.prepared import UNKNOWN, PreparedDynamics
 from mbsd.dynamics.state import Settings
-from mbsd.kinematics.groups.carrying.branch import FLOOR
-from mbsd.kinematics.groups.carrying.columns import AVOID, BASE, COS, INERTIA, MASS, NEAR, SPEED, THETA, TURNS
+from mbsd.kinematics.groups.carried import AVOID, BASE, COS, INERTIA, MASS, NEAR, SPEED, THETA, TURNS
+from mbsd.kinematics.groups.cases import FLOOR
 from mbsd.kinematics.groups.plan import Plan
 
 GOOD = 3.0

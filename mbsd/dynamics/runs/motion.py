@@ -39,7 +39,7 @@ from mbsd.dynamics.runs.run import AUTO, INDEPENDENT, REFERENCE, Run
 from mbsd.dynamics.runs.steps import Pace, advance
 from mbsd.dynamics.state import NEXT, PAUSED, REACHED, STARTED, STEP, TIME, WORK, Output, State, copied
 from mbsd.kinematics.groups.groups import KIND
-from mbsd.kinematics.groups.registry import BRANCH
+from mbsd.kinematics.groups.tables import BRANCH
 
 PASSING = 6
 """Steps in reference coordinates before independent ones are tried again; doubled while they do not lead away."""

@@ -15,8 +15,10 @@ from mbsd.equations.interactions.law import (
     X,
     Y,
     interaction,
+    normal_force,
+    note,
+    touches,
 )
-from mbsd.equations.interactions.normal_force import normal_force, note, touches
 
 JOURNAL, CLEARANCE, STIFFNESS, EXPONENT, DAMPING, FRICTION, CREEP, SLIDE, LOSS, LEAST_APPROACH = range(10)
 SWITCHES = True
@@ -24,7 +26,7 @@ SWITCHES = True
 
 @interaction
 def force(numbers, state, out):
-    """Own numbers by the names above."""
+    """Fill the force; own numbers by the names above."""
     out[FX] = 0.0
     out[FY] = 0.0
     out[TORQUE] = 0.0

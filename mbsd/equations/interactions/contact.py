@@ -5,16 +5,22 @@ from __future__ import annotations
 import math
 
 from mbsd.equations.interactions.law import (
+    DISTANCE,
     FX,
     FY,
     OMEGA,
     TORQUE,
+    TX,
+    TY,
     VX,
     VY,
+    after,
     interaction,
+    normal_force,
+    note,
+    stand,
+    touches,
 )
-from mbsd.equations.interactions.normal_force import normal_force, note, touches
-from mbsd.equations.interactions.surface import DISTANCE, TX, TY, after, stand
 
 RADIUS, STIFFNESS, EXPONENT, DAMPING, FRICTION, SLIP_SPEED, LOSS, LEAST_APPROACH = range(8)
 SWITCHES = True
@@ -22,7 +28,7 @@ SWITCHES = True
 
 @interaction
 def force(numbers, state, out):
-    """Own numbers by the names above."""
+    """Fill the force; own numbers by the names above."""
     stand(numbers, state)
     own = after(numbers)
     out[FX] = 0.0

@@ -23,7 +23,7 @@ SWITCHES = True
 
 @interaction
 def force(numbers, state, out):
-    """Own numbers by the names above."""
+    """Fill the force; own numbers by the names above."""
     own = OWN
     first = numbers[own + FIRST]
     period = numbers[own + PERIOD]

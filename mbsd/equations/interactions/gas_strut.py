@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.equations.interactions.law import FX, FY, OWN, SIDE, SWITCH, TORQUE, interaction
-from mbsd.equations.interactions.way import measure
+from mbsd.equations.interactions.law import OWN, act_along, end_stop, interaction, measure
 
 (
     FORCE, GAS, EXPONENT, LENGTH, STROKE, IN, OUT, END, END_WAY, FRICTION, SLIP_SPEED, STOP, STOP_DAMPING,
@@ -16,7 +15,7 @@ SWITCHES = True
 
 @interaction
 def force(numbers, state, out):
-    """Own numbers by the names above."""
+    """Fill the force; own numbers by the names above."""
     length, rate, ux, uy = measure(False, state)
     in_by = numbers[LENGTH] - length
     size = numbers[FORCE] * (numbers[GAS] / (numbers[GAS] - in_by)) ** numbers[EXPONENT]
@@ -27,14 +26,5 @@ def force(numbers, state, out):
         damping += u * u * u * (10.0 - 15.0 * u + 6.0 * u * u) * (numbers[END] - damping)
     damping = numbers[IN] + 0.5 * (1.0 + way) * (damping - numbers[IN])
     size -= damping * rate + numbers[FRICTION] * way
-    outwards = 1.0
-    depth = in_by - numbers[STROKE]
-    if -in_by > depth:
-        outwards = -1.0
-        depth = -in_by
-    out[SWITCH] = depth
-    if state[SIDE] > 0.0 or (state[SIDE] == 0.0 and depth > 0.0):
-        size += outwards * numbers[STOP] * depth * max(1.0 - outwards * numbers[STOP_DAMPING] * rate, 0.0)
-    out[FX] = ux * size
-    out[FY] = uy * size
-    out[TORQUE] = 0.0
+    size += end_stop(state, out, in_by, -rate, numbers[STROKE], numbers[STOP], numbers[STOP_DAMPING])
+    act_along(out, False, size, ux, uy)

@@ -16,8 +16,10 @@ from mbsd.equations.interactions.law import (
     X,
     Y,
     interaction,
+    normal_force,
+    note,
+    touches,
 )
-from mbsd.equations.interactions.normal_force import normal_force, note, touches
 
 MIDDLE, FLANK, BASE_I, BASE_J, HALF, INVOLUTE, PERIOD, STIFFNESS, EXPONENT, DAMPING, LOSS, LEAST_APPROACH = range(12)
 SWITCHES = True
@@ -25,7 +27,7 @@ SWITCHES = True
 
 @interaction
 def force(numbers, state, out):
-    """Own numbers by the names above: the base radius of gear j is below 0 in a ring."""
+    """Fill the force; own numbers by the names above. In a ring the base radius of gear j is negative."""
     out[FX] = 0.0
     out[FY] = 0.0
     out[TORQUE] = 0.0

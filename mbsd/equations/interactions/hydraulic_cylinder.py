@@ -6,8 +6,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import internal
-from mbsd.equations.interactions.law import FX, FY, LAW, OWN, OWN_STATE, RATE, SIDE, SWITCH, TORQUE, interaction
-from mbsd.equations.interactions.way import measure
+from mbsd.equations.interactions.law import LAW, OWN, OWN_STATE, RATE, act_along, end_stop, interaction, measure
 
 (
     ONE, OPENING, AREA_A, AREA_B, RETRACTED, STROKE, DEAD_A, DEAD_B, COMPRESSIBILITY, AIR, LEAST, SUPPLY, TANK,
@@ -22,7 +21,7 @@ LITTLE = 1e-3
 
 @internal
 def orifice(drop, transition):
-    """The root of the pressure drop (Pa) with its sign, linear where that is below ``transition``."""
+    """Return the root of the pressure drop (Pa) with its sign, linear where that is below ``transition``."""
     return drop / math.sqrt(math.sqrt(drop * drop + transition * transition))
 
 
@@ -38,7 +37,7 @@ def bulk(pressure, flow, compressibility, air, least):
 
 @interaction
 def force(numbers, state, out):
-    """Own numbers by the names above."""
+    """Fill the force; own numbers by the names above."""
     length, rate, ux, uy = measure(False, state)
     a = numbers[ONE] * state[OWN_STATE]
     b = numbers[ONE] * state[OWN_STATE + 1]
@@ -64,14 +63,5 @@ def force(numbers, state, out):
     out[RATE + 1] = bulk_b / volume_b * into_b / numbers[ONE]
     size = a * numbers[AREA_A] - b * numbers[AREA_B] - numbers[OUTSIDE] * (numbers[AREA_A] - numbers[AREA_B])
     size -= numbers[FRICTION] * math.tanh(rate / numbers[SLIP_SPEED])
-    inwards = 1.0
-    depth = out_by - numbers[STROKE]
-    if -out_by > depth:
-        inwards = -1.0
-        depth = -out_by
-    out[SWITCH] = depth
-    if state[SIDE] > 0.0 or (state[SIDE] == 0.0 and depth > 0.0):
-        size -= inwards * numbers[STOP] * depth * max(1.0 + inwards * numbers[STOP_DAMPING] * rate, 0.0)
-    out[FX] = ux * size
-    out[FY] = uy * size
-    out[TORQUE] = 0.0
+    size -= end_stop(state, out, out_by, rate, numbers[STROKE], numbers[STOP], numbers[STOP_DAMPING])
+    act_along(out, False, size, ux, uy)

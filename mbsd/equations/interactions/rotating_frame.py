@@ -7,7 +7,7 @@ from mbsd.equations.interactions.law import FX, FY, LAW, LAW_RATE, OWN, TORQUE, 
 
 @interaction
 def force(numbers, state, out):
-    """Own numbers: mass, inertia, constant rate; the law of time is added to the rate."""
+    """Fill the force; numbers: mass, inertia, constant rate, to which the law of time is added."""
     mass = numbers[OWN]
     rate = numbers[OWN + 2] + state[LAW]
     out[FX] = mass * (rate * rate * state[X] + 2.0 * rate * state[VY] + state[LAW_RATE] * state[Y])

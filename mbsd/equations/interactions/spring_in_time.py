@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from mbsd.base.codes import DAMPER, STIFFNESS
-from mbsd.equations.interactions.law import FX, FY, LAW, OWN, TORQUE, interaction
-from mbsd.equations.interactions.way import measure
+from mbsd.equations.interactions.law import LAW, OWN, act_along, interaction, measure
 
 
 @interaction
@@ -21,6 +20,4 @@ def force(numbers, state, out):
         size = -state[LAW] * rate
     else:
         size = numbers[OWN + 1] * state[LAW]
-    out[FX] = ux * size
-    out[FY] = uy * size
-    out[TORQUE] = size if turning else 0.0
+    act_along(out, turning, size, ux, uy)

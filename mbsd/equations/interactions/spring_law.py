@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from mbsd.compiling.callback import call
-from mbsd.equations.interactions.law import FX, FY, OWN, TIME, TORQUE, X, Y, interaction
-from mbsd.equations.interactions.way import measure
+from mbsd.equations.interactions.law import OWN, TIME, X, Y, act_along, interaction, measure
 
 
 @interaction
 def force(numbers, state, out):
-    """Own numbers: the address of the law, a function of value and rate, and 1 for a torsion spring."""
+    """Fill the force; numbers: the address of a law of value and rate, and 1 for a torsion spring."""
     turning = numbers[OWN + 1] > 0.0
     value, rate, ux, uy = measure(turning, state)
     state[X] = value  # the place is not read again
     state[Y] = rate
     call(int(numbers[OWN]), state[TIME], state, out)  # pyright: ignore[reportCallIssue]
     size = out[0]
-    out[FX] = ux * size
-    out[FY] = uy * size
-    out[TORQUE] = size if turning else 0.0
+    act_along(out, turning, size, ux, uy)

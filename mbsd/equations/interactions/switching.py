@@ -61,7 +61,7 @@ def hold(switch, near):
 
 @inlined
 def note_end(switch):
-    """The last evaluation was where the step ends."""
+    """Record that the last evaluation was where the step ends."""
     for row in range(1, switch.shape[0]):
         switch[row, END] = switch[row, VALUE]
         switch[row, SPEED_END] = switch[row, SPEED_HERE]
@@ -84,7 +84,7 @@ def note_begin(switch):
 
 @inlined
 def accept(switch, t):
-    """The next step begins where this one ends, at the time t.
+    """Begin the next step where this one ends, at the time t.
 
     What is before its switch, or ends there (LOOSE is 2), passes it at the rate that it has now. A step that passed a
     switch unseen began before it, at the rate noted then, and passed it in between; the one after a switch that was met
@@ -112,7 +112,7 @@ def accept(switch, t):
 
 @inlined
 def farthest(switch, column):
-    """How far the one is beyond its switch that is farthest (m), below 0 before it."""
+    """Return how far the one is beyond its switch that is farthest (m), below 0 before it."""
     far = -math.inf
     for row in range(1, switch.shape[0]):
         if switch[row, KEPT] != 0.0:

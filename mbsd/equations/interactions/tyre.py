@@ -4,8 +4,22 @@ from __future__ import annotations
 
 import math
 
-from mbsd.equations.interactions.law import FX, FY, OMEGA, SIDE, SWITCH, TORQUE, VX, VY, interaction
-from mbsd.equations.interactions.surface import DISTANCE, TX, TY, after, stand
+from mbsd.equations.interactions.law import (
+    DISTANCE,
+    FX,
+    FY,
+    OMEGA,
+    SIDE,
+    SWITCH,
+    TORQUE,
+    TX,
+    TY,
+    VX,
+    VY,
+    after,
+    interaction,
+    stand,
+)
 
 RADIUS, STIFFNESS, DAMPING, GRIP, SLOPE, SHAPE, CURVATURE, STANDSTILL = range(8)
 SWITCHES = True
@@ -13,7 +27,7 @@ SWITCHES = True
 
 @interaction
 def force(numbers, state, out):
-    """Own numbers by the names above."""
+    """Fill the force; own numbers by the names above."""
     stand(numbers, state)
     own = after(numbers)
     out[FX] = 0.0

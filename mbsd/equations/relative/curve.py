@@ -13,12 +13,12 @@ from __future__ import annotations
 import math
 
 from mbsd.equations.relative.curve_pieces import CX, CY, DDX, DDY, DISTANCE, DX, DY, find_foot
-from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA, FYY, F, X, Y, equation
+from mbsd.equations.relative.equation import FX, FXX, FXY, FY, FYY, F, X, Y, clear, equation
 
 
 @equation
 def residual(numbers, relative, out):
-    """F (m); own numbers as in curve_pieces.py."""
+    """Fill F (m); own numbers as in curve_pieces.py."""
     find_foot(numbers, relative)
     speed = math.sqrt(relative[DX] * relative[DX] + relative[DY] * relative[DY])
     tx = relative[DX] / speed
@@ -26,13 +26,10 @@ def residual(numbers, relative, out):
     kappa = (tx * relative[DDY] - ty * relative[DDX]) / (speed * speed)
     d = tx * (relative[Y] - relative[CY]) - ty * (relative[X] - relative[CX])
     bend = -kappa / (1.0 - kappa * d)
+    clear(out)
     out[F] = d - numbers[DISTANCE]
     out[FX] = -ty
     out[FY] = tx
-    out[FA] = 0.0
     out[FXX] = bend * tx * tx
     out[FXY] = bend * tx * ty
     out[FYY] = bend * ty * ty
-    out[FXA] = 0.0
-    out[FYA] = 0.0
-    out[FAA] = 0.0

@@ -88,7 +88,7 @@ def _square_to(numbers, node, x, y):
 
 @internal
 def _piece_at(numbers, u):
-    """The piece that holds u; the first or last beyond the ends."""
+    """Return the piece that holds u; the first or last beyond the ends."""
     low = 0
     high = int(numbers[COUNT])
     while high - low > 1:
@@ -150,7 +150,7 @@ def _square_to_end(numbers, x, y):
 
 @internal
 def _nearest_foot(numbers, relative, x, y, u, count):
-    """Parameter of the nearest of the feet that u and all nodes lead to, and how close it is, squared.
+    """Return the nearest foot that u and all nodes lead to, and its squared distance.
 
     A place of a piece is at most REACH from one of its ends, so that nodes farther away lead to no nearer one.
     """
@@ -233,7 +233,7 @@ def _find_following_foot(numbers, relative, x, y, count):
 
 @internal
 def _cost(numbers, relative, x, y, u, closed):
-    """How much the foot that is found from u is off; leaves the foot in the scratch."""
+    """Return how much the foot that is found from u is off; leaves the foot in the scratch."""
     _go_to_foot(numbers, relative, x, y, u)
     speed = math.sqrt(relative[DX] * relative[DX] + relative[DY] * relative[DY])
     d = (relative[DX] * (y - relative[CY]) - relative[DY] * (x - relative[CX])) / speed
@@ -245,7 +245,7 @@ def _cost(numbers, relative, x, y, u, closed):
 
 @internal
 def _go_to_foot(numbers, relative, x, y, u):
-    """Newton from u; leaves the foot in the scratch."""
+    """Find the foot by Newton from u; leave it in the scratch."""
     begin = numbers[TABLE]
     span = numbers[SPAN]
     longest = span / numbers[COUNT]
@@ -279,7 +279,7 @@ def _go_to_foot(numbers, relative, x, y, u):
 
 @kernel
 def foot(numbers, x, y, scratch):
-    """Parameter of the foot of (x, y), for callers outside the compiled loops; scratch (16,) with LAST."""
+    """Return the parameter of the foot of (x, y), for callers in Python; scratch (16,) with LAST."""
     scratch[X] = x
     scratch[Y] = y
     find_foot(numbers, scratch)

@@ -40,7 +40,21 @@ from mbsd.equations.relative.curve_pieces import (
     find_foot,
     place_on,
 )
-from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA, FYY, PHASE, A, F, X, Y, equation
+from mbsd.equations.relative.equation import (
+    FA,
+    FX,
+    FXX,
+    FXY,
+    FY,
+    FYY,
+    PHASE,
+    A,
+    F,
+    X,
+    Y,
+    clear,
+    equation,
+)
 from mbsd.equations.system import ZERO
 
 NODES = (-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640)
@@ -50,7 +64,7 @@ WEIGHTS = (0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286
 
 @internal
 def arc_length(numbers, piece, u, scratch):
-    """Arc length at u (m), counted from the begin of the curve; overwrites the scratch."""
+    """Return arc length at u (m), counted from the begin of the curve; overwrites the scratch."""
     begin = numbers[TABLE + WIDTH * piece]
     inside = u
     if numbers[CLOSED] == 0.0:
@@ -67,7 +81,7 @@ def arc_length(numbers, piece, u, scratch):
 
 @equation
 def residual(numbers, relative, out):
-    """F (m); own numbers as in curve_pieces.py."""
+    """Fill F (m); own numbers as in curve_pieces.py."""
     find_foot(numbers, relative)
     piece = int(relative[PIECE])
     u = relative[U]
@@ -95,6 +109,7 @@ def residual(numbers, relative, out):
     first = 1.0 - r * kappa
     outer = first * kappa_rate * d / (w * w * w) - r * kappa_rate / (w * w)
     mixed = first * kappa / (w * w)
+    clear(out)
     out[F] = value
     out[FX] = first * tx / w
     out[FY] = first * ty / w
@@ -102,6 +117,3 @@ def residual(numbers, relative, out):
     out[FXX] = outer * tx * tx - 2.0 * mixed * tx * ty
     out[FXY] = outer * tx * ty + mixed * (tx * tx - ty * ty)
     out[FYY] = outer * ty * ty + 2.0 * mixed * tx * ty
-    out[FXA] = 0.0
-    out[FYA] = 0.0
-    out[FAA] = 0.0

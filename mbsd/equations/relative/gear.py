@@ -17,13 +17,10 @@ import math
 from mbsd.equations.relative.equation import (
     DIRECTION,
     FA,
-    FAA,
     FX,
-    FXA,
     FXX,
     FXY,
     FY,
-    FYA,
     FYY,
     OWN,
     PHASE,
@@ -33,6 +30,7 @@ from mbsd.equations.relative.equation import (
     F,
     X,
     Y,
+    clear,
     equation,
 )
 from mbsd.equations.system import ZERO
@@ -42,7 +40,7 @@ TWO_PI = 2.0 * math.pi
 
 @equation
 def residual(numbers, relative, out):
-    """F (m); own numbers r_i, s r_j."""
+    """Fill F (m); own numbers r_i, s r_j."""
     x = relative[X]
     y = relative[Y]
     square = x * x + y * y
@@ -55,6 +53,7 @@ def residual(numbers, relative, out):
     if numbers[WRAPS] != 0.0 and period > 0.0:
         value -= period * math.floor(value / period + 0.5)
     fourth = square * square
+    clear(out)
     out[F] = value
     out[FX] = both * y / square
     out[FY] = -both * x / square
@@ -62,6 +61,3 @@ def residual(numbers, relative, out):
     out[FXX] = -both * 2.0 * x * y / fourth
     out[FXY] = both * (x * x - y * y) / fourth
     out[FYY] = both * 2.0 * x * y / fourth
-    out[FXA] = 0.0
-    out[FYA] = 0.0
-    out[FAA] = 0.0

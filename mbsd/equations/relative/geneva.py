@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA, FYY, OWN, A, F, X, Y, equation
+from mbsd.equations.relative.equation import FA, FX, FXX, FXY, FY, FYY, OWN, A, F, X, Y, clear, equation
 
 
 @equation
@@ -37,6 +37,7 @@ def residual(numbers, relative, out):
     value -= math.atan2(y, x)
     square = x * x + y * y
     fourth = square * square
+    clear(out)
     out[F] = value - pitch * math.floor(value / pitch + 0.5)
     out[FX] = y / square
     out[FY] = -x / square
@@ -44,6 +45,3 @@ def residual(numbers, relative, out):
     out[FXX] = -2.0 * x * y / fourth
     out[FXY] = (x * x - y * y) / fourth
     out[FYY] = 2.0 * x * y / fourth
-    out[FXA] = 0.0
-    out[FYA] = 0.0
-    out[FAA] = 0.0

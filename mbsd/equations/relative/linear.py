@@ -7,19 +7,18 @@ It serves the rack (x + r a), the height of a disc over a line (y = r) and whate
 
 from __future__ import annotations
 
-from mbsd.equations.relative.equation import FA, FX, FXX, FY, OWN, PHASE, A, F, X, Y, equation
+from mbsd.equations.relative.equation import FA, FX, FY, OWN, PHASE, A, F, X, Y, clear, equation
 from mbsd.equations.system import ZERO
 
 
 @equation
 def residual(numbers, relative, out):
-    """F (m); own numbers g_x, g_y, g_a, and b, which counts to c."""
+    """Fill F (m); own numbers g_x, g_y, g_a, and b, which counts to c."""
     gx = numbers[OWN]
     gy = numbers[OWN + 1]
     ga = numbers[OWN + 2]
+    clear(out)
     out[F] = gx * relative[X] + gy * relative[Y] + ga * relative[A] - numbers[OWN + 3] - numbers[PHASE] - relative[ZERO]
     out[FX] = gx
     out[FY] = gy
     out[FA] = ga
-    for k in range(FXX, FXX + 6):
-        out[k] = 0.0

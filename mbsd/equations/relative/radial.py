@@ -10,25 +10,36 @@ from __future__ import annotations
 
 import math
 
-from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA, FYY, OWN, PHASE, F, X, Y, equation
+from mbsd.equations.relative.equation import (
+    FX,
+    FXX,
+    FXY,
+    FY,
+    FYY,
+    OWN,
+    PHASE,
+    F,
+    X,
+    Y,
+    clear,
+    equation,
+)
 from mbsd.equations.system import ZERO
 
 
 @equation
 def residual(numbers, relative, out):
-    """F (m); own numbers s, c."""
+    """Fill F (m); own numbers s, c."""
     x = relative[X]
     y = relative[Y]
     s = numbers[OWN]
     length = math.sqrt(x * x + y * y)
     cube = length * length * length
+    clear(out)
     out[F] = s * (length - numbers[OWN + 1]) - numbers[PHASE] - relative[ZERO]
-    out[FX] = s * x / length if length > 0.0 else 0.0
-    out[FY] = s * y / length if length > 0.0 else 0.0
-    out[FA] = 0.0
-    out[FXX] = s * y * y / cube if length > 0.0 else 0.0
-    out[FXY] = -s * x * y / cube if length > 0.0 else 0.0
-    out[FXA] = 0.0
-    out[FYY] = s * x * x / cube if length > 0.0 else 0.0
-    out[FYA] = 0.0
-    out[FAA] = 0.0
+    if length > 0.0:
+        out[FX] = s * x / length
+        out[FY] = s * y / length
+        out[FXX] = s * y * y / cube
+        out[FXY] = -s * x * y / cube
+        out[FYY] = s * x * x / cube

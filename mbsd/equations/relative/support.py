@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA, FYY, OWN, A, F, X, Y, equation
+from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FY, FYA, OWN, A, F, X, Y, clear, equation
 
 
 @equation
@@ -49,13 +49,11 @@ def residual(numbers, relative, out):
         reach = reach * s + numbers[row + 6 - k]
     along = cosine * relative[X] + sine * relative[Y]
     across = cosine * relative[Y] - sine * relative[X]
+    clear(out)
     out[F] = across - reach
     out[FX] = -sine
     out[FY] = cosine
     out[FA] = -along - slope
-    out[FXX] = 0.0
-    out[FXY] = 0.0
-    out[FYY] = 0.0
     out[FXA] = -cosine
     out[FYA] = -sine
     out[FAA] = -across - bend

@@ -73,7 +73,7 @@ class Way:
     """(motions + 1, 3) of the drivers that do not move."""
 
     def drives(self, p: np.ndarray, sign: float = 1.0) -> np.ndarray:
-        """(P, motions + 1, 3) values of the drivers at p (P,), with their derivatives by ``sign`` p."""
+        """Return (P, motions + 1, 3) values of the drivers at p (P,), with their derivatives by ``sign`` p."""
         rate = sign / self.scale
         if self.driver is None:
             return self.packed.drives(self.origin + p / self.scale) * np.array([1.0, rate, rate * rate])
@@ -83,7 +83,7 @@ class Way:
         return out
 
     def at(self, times: np.ndarray) -> np.ndarray:
-        """(T, 3) p and its derivatives in time at ``times`` (T,) (s)."""
+        """Return (T, 3) p and its derivatives in time at ``times`` (T,) (s)."""
         if self.driver is None:
             ones = np.ones(len(times))
             return np.stack([(times - self.origin) * self.scale, self.scale * ones, 0.0 * ones], axis=1)
@@ -122,18 +122,18 @@ class Solver:
         return (q, sign * v, a, determinant) if status == newton.DONE else None
 
     def extent(self, change: np.ndarray) -> float:
-        """Largest part of changes (..., 3 nb) of poses, lengths in sizes."""
+        """Return largest part of changes (..., 3 nb) of poses, lengths in sizes."""
         return float(np.abs(change[..., 3:] / self.packed.column_scale()).max(initial=0.0))
 
     def gap(self, way: Way, q: np.ndarray, p: float) -> float:
-        """Largest residual at a pose q (3 nb,), in sizes and rad, of the rows that are solved."""
+        """Return largest residual at a pose q (3 nb,), in sizes and rad, of the rows that are solved."""
         drive = way.drives(np.array([p]))[0]
         residual_and_jacobian(self.packed.system, q, drive, self.packed.ws)
         rows = self.sequence.rows.astype(np.int64)
         return float(np.abs(self.packed.ws.phi[rows] * self.packed.row_scale()[rows]).max())
 
     def jacobian(self, way: Way, q: np.ndarray, p: float) -> np.ndarray:
-        """(n, n) dimensionless Jacobian of the rows that are solved, at a pose q (3 nb,)."""
+        """Return (n, n) dimensionless Jacobian of the rows that are solved, at a pose q (3 nb,)."""
         residual_and_jacobian(self.packed.system, q, way.drives(np.array([p]))[0], self.packed.ws)
         rows = self.sequence.rows.astype(np.int64)
         return self.packed.jacobian()[rows] * self.packed.row_scale()[rows, None] * self.packed.column_scale()
@@ -151,11 +151,11 @@ class Assembly:
     """(12, d) of the blocks of J."""
 
     def at(self, p: np.ndarray) -> np.ndarray:
-        """(3, P, 3 nb) q, dq/dp and d2q/dp2 at p (P,)."""
+        """Return (3, P, 3 nb) q, dq/dp and d2q/dp2 at p (P,)."""
         return np.einsum("pn,knc->kpc", lagrange(self.nodes, p), self.parts)
 
     def errors(self, solver: Solver) -> tuple[float, float]:
-        """Errors of q and of d2q/dp2: what the outermost two poses change near the change point."""
+        """Return errors of q and of d2q/dp2: what the outermost two poses change near the change point."""
         inner = np.abs(self.nodes) < np.abs(self.nodes).max() * 0.99
         probes = 0.5 * np.array([-1.0, 0.0, 1.0]) * np.abs(self.nodes).min()
         fewer = np.einsum("pn,knc->kpc", lagrange(self.nodes[inner], probes), self.parts[:, inner])
@@ -163,7 +163,7 @@ class Assembly:
         return solver.extent(wrong[0]), solver.extent(wrong[2])
 
     def root(self) -> float | None:
-        """The p nearest to 0 at which the determinant of a block vanishes; None if none does."""
+        """Return the p nearest to 0 at which the determinant of a block vanishes; None if none does."""
         coefficients = np.polynomial.polynomial.polyfit(self.nodes, self.determinant, len(self.nodes) - 1)
         reach, meeting = 0.5 * np.abs(self.nodes).min(), []
         for column in coefficients.T:

@@ -3,6 +3,9 @@
 The march comes to a pose where steps, however short, do not tell two assemblies apart. If they meet there
 (assemblies.py), the steps nearby are left out, and it goes on beyond, on the smooth continuation or, where asked
 for, on the other assembly. Poses near the change point are those of the passage.
+
+Efforts near a change point follow from poses beside it (mbsd/arrays/efforts_beside.py): on both sides, or on one side
+alone where the motion begins or ends there or switches to the other assembly.
 """
 
 from __future__ import annotations
@@ -11,8 +14,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from mbsd.arrays.efforts_beside import Side, lagrange
 from mbsd.base.errors import ModelError, SingularPoseError
 from mbsd.kinematics.change_points.assemblies import (
+    APART,
     GAP,
     Assembly,
     Solver,
@@ -67,7 +72,9 @@ class Passage:
         return min(float(np.abs(assembly.nodes).min()) for assembly in (self.before, self.after))
 
     def motion(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """q, v, a (T, 3 nb) at ``times`` (T,) near the change point; where it switches, those before it."""
+        """Return q, v, a (T, 3 nb) at ``times`` (T,) near the change point.
+
+        Where the motion switches, they are those before it."""
         way = self.way.at(times)
         late = (times > self.time) & ~self.is_at(times)
         q, slope, bend = self.before.at(way[:, 0])
@@ -77,15 +84,15 @@ class Passage:
         return q, slope * rate, bend * rate * rate + slope * second
 
     def is_at(self, times: np.ndarray) -> np.ndarray:
-        """(T,) whether the pose at ``times`` (s) is the change point itself, but for rounding."""
+        """Return (T,) whether the pose at ``times`` (s) is the change point itself, but for rounding."""
         return np.abs(self.way.at(times)[:, 0]) <= ITSELF
 
     def is_near(self, times: np.ndarray) -> np.ndarray:
-        """(T,) whether steps right beyond the gap at ``times`` (s) are those of the passage."""
+        """Return (T,) whether steps right beyond the gap at ``times`` (s) are those of the passage."""
         return np.abs(self.way.at(times)[:, 0]) <= FILLED
 
     def covers(self, times: np.ndarray) -> np.ndarray:
-        """(T,) which of the rising ``times`` (s) belong to it: those around it that stay within ``radius``."""
+        """Return (T,) True for the rising ``times`` (s) around it that stay within ``radius``."""
         near = np.abs(self.way.at(times)[:, 0]) <= self.radius
         first, last = int(np.searchsorted(times, self.start, side="right")), int(np.searchsorted(times, self.end))
         while first > 0 and near[first - 1]:
@@ -145,7 +152,7 @@ class Passages:
         steps = self.steps
         for passage in self.passages:
             if len(passage.left_out):
-                at = steps.put_back(passage.left_out)
+                at = steps.restore(passage.left_out)
                 q, v, a = (np.insert(array, at, 0.0, axis=0) for array in (q, v, a))
         for passage in self.passages:
             rows = passage.covers(steps.times)
@@ -153,7 +160,7 @@ class Passages:
         return q, v, a
 
     def _meeting(self, row: int, pose: np.ndarray, v: np.ndarray) -> tuple[Way, Assembly] | None:
-        """The way past the change point near a pose, and the smooth motion on it; None where there is none."""
+        """Return the way past the change point near a pose, and the smooth motion on it; None without one."""
         steps, solver, time = self.steps, self.solver, float(self.steps.times[row])
         way = way_from(steps.packed, steps.drives, steps.drives[row], time, v, solver, pose)
         ahead = None if way is None else find_ahead(solver, way, pose)
@@ -175,7 +182,7 @@ class Passages:
         return way, Assembly(assembly.nodes - root, assembly.parts, assembly.determinant)
 
     def _in_time(self, row: int, way: Way, assembly: Assembly) -> Passage:
-        """When the motion is near the change point, and on which assembly it goes on."""
+        """Return when the motion is near the change point, and on which assembly it goes on."""
         known = self.steps.times[: row + 1]
         outside = np.flatnonzero(np.abs(way.at(known)[:, 0]) >= EDGE)
         start = float(known[outside[-1]]) if len(outside) else -np.inf
@@ -235,7 +242,7 @@ class Passages:
 
 
 def _meeting_time(way: Way, time: float) -> float:
-    """When p is 0 if it goes on as it goes at ``time``, forward or backward (s)."""
+    """Return when p is 0 if it goes on as it goes at ``time``, forward or backward (s)."""
     p, rate, _ = way.at(np.array([time]))[0]
     return time - p / rate if rate else time
 
@@ -253,3 +260,61 @@ def _crossing_time(way: Way, looks: np.ndarray) -> float:
         looks = np.linspace(first, last, 33)
     time = float(looks[int(np.argmin(np.abs(way.at(looks)[:, 0])))])
     return _meeting_time(way, time) if time in ends else time
+
+
+NEAR = 0.02
+"""Distance from the change point, in sizes and rad, within which efforts are those of poses beside."""
+ONE_SIDE = 0.0325 + 0.0275 * np.cos(np.pi * (np.arange(8)[::-1] + 0.5) / 8)
+"""Distances of the poses where there are some on one side alone, in sizes and rad: Chebyshev's."""
+VANISHES = 1e-6
+"""Part of its largest value below which the determinant of a block vanishes at the change point."""
+
+
+def sides_of(passage: Passage, times: np.ndarray) -> list[Side]:
+    """Return poses beside a change point for efforts at rising ``times`` (T,) (s), with their indices."""
+    rows = times[passage.covers(times)]
+    rows = rows[np.abs(passage.way.at(rows)[:, 0]) < NEAR]
+    if not len(rows):
+        return []
+    _, rate, second = passage.way.at(np.array([passage.time]))[0]
+    pace = max(abs(rate), np.sqrt(0.5 * NEAR * abs(second)))
+    if not pace > 0.0:
+        return [Side(passage.time, np.zeros(0), rows)]
+    apart, ends = passage.is_switched, (float(times[0]), float(times[-1]))
+    there = passage.is_at(rows) if apart else np.zeros(len(rows), bool)
+    sides = sides_beside(passage.time, rows[~there], 1.0 / pace, *ends, apart)
+    return [*sides, Side(passage.time, np.zeros(0), rows[there])] if there.any() else sides
+
+
+def sides_beside(
+    time: float, rows: np.ndarray, pace: float, start: float, end: float, is_switched: bool = False
+) -> list[Side]:
+    """Return poses beside a change point at ``time`` (s).
+
+    In ``pace`` (s) the motion goes on by 1 size or rad.
+    ``rows`` (R,): times of the efforts (s); ``start``, ``end``: times of the whole motion (s).
+    """
+    away = pace * NEAR * APART
+    reach = float(away[-1])
+    is_open = start <= time - reach and time + reach <= end
+    early, late = start <= time - reach, time + reach <= end
+    if not is_switched and (is_open or not (early or late)):
+        return [Side(time, time + np.concatenate([-away[::-1], away]), rows)]
+    alone = pace * ONE_SIDE
+    sides = [Side(time, time - alone[::-1], rows[rows < time]), Side(time, time + alone, rows[rows > time])]
+    if is_switched:
+        return [side for side in sides if len(side.rows)]
+    side = sides[0] if early else sides[1]
+    return [Side(time, side.nodes, rows)]
+
+
+def determinant_of(passage: Passage, times: np.ndarray) -> np.ndarray:
+    """Return (T,) products of determinants that vanish at a change point, on one side of it.
+
+    ``times`` are in s.
+    """
+    assembly = passage.after if passage.is_switched and times[0] > passage.time else passage.before
+    weights = lagrange(assembly.nodes, np.append(passage.way.at(times)[:, 0], 0.0))
+    values = weights @ assembly.determinant
+    vanishing = np.abs(values[-1]) < VANISHES * np.abs(assembly.determinant).max(axis=0)
+    return np.prod(values[:-1, vanishing], axis=1)

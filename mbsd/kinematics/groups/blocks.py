@@ -2,7 +2,7 @@
 
 Each body hangs from a known one or from an earlier one of its block, so that few unknowns are left: the angle of a pin,
 the way of a slide, or all three coordinates where there is neither. What else holds the bodies are the equations, all
-of them functions F(x, y, a) of the relative pose of two markers (equations/constraints/relative.py). A gear wheel in an
+of them functions F(x, y, a) of the relative pose of two markers (equations/relative/equation.py). A gear wheel in an
 eccentric bearing, a cam's follower and a Geneva's wheel are blocks of one unknown.
 """
 
@@ -36,7 +36,7 @@ STRIDE, SIZE = 7, 8
 LARGEST = 12
 """Unknowns of one block; with more the mechanism is solved as a whole, with its sparse factors."""
 DOUBTED_BEFORE = 4
-"""Beside the states of carrying/rates.py: a pose is needed in the step before this one."""
+"""Beside the states of carried.py: a pose is needed in the step before this one."""
 
 
 class Blocks(NamedTuple):
@@ -92,7 +92,7 @@ def with_scratch(
     train_body: Sequence[int],
     share: Sequence[float],
 ) -> Blocks:
-    """The fields of the same names as arrays, and the scratch."""
+    """Return the fields of the same names as arrays, and the scratch."""
     most = max((row[BODIES] for row in head), default=0)
     return Blocks(
         head=np.array(head, np.int64).reshape(-1, 9),
@@ -111,3 +111,69 @@ def with_scratch(
         du=np.zeros((2, LARGEST)),
         scratch=np.zeros(LARGEST * LARGEST + 3 * LARGEST * most + 16),
     )
+
+
+class Block(NamedTuple):
+    """One block of a plan; its tables are those of mbsd/kinematics/groups/blocks.py."""
+
+    head: Any
+    """(9,) counts, and where the tables begin."""
+    tree: Any
+    """(bodies, 5) how each body is joined to another."""
+    rows: Any
+    """(n, 9) equations."""
+    near: Any
+    """Known bodies beside."""
+    frame: Any
+    """(bodies, 7) places of the joints in ``tree``."""
+    arms: Any
+    """(n, 9) arms of the equations."""
+    numbers: Any
+    """Numbers of the relative equations."""
+
+
+class Motion(NamedTuple):
+    """All bodies at one time."""
+
+    q: Any
+    """(3 nb,) poses, then velocities and accelerations."""
+    v: Any
+    a: Any
+    turn: Any
+    """(nb, 2) cosine and sine of the angles."""
+
+
+class History(NamedTuple):
+    """A driven motion, of which one row after the other is filled."""
+
+    times: Any
+    """(T,) s"""
+    drives: Any
+    """(T, motions + 1, 3)"""
+    q: Any
+    """(T, 3 nb), and so are v and a."""
+    v: Any
+    a: Any
+    turn: Any
+    """(nb, 2) of the row that is filled."""
+    start: Any
+    """(3 nb,) the pose from which angles go on."""
+    determinant: Any
+    """(T, 1) of the block."""
+
+
+class Work(NamedTuple):
+    """Scratch."""
+
+    unknown: Any
+    """(3, 12) unknowns, their rates and accelerations."""
+    jac: Any
+    """(12, 6) rows of the equations on their two bodies."""
+    out: Any
+    """(12, 10) equations with their derivatives."""
+    solution: Any
+    """(2, 12) corrections, order of rows."""
+    matrix: Any
+    """Factors of G, columns of the unknowns, a relative pose."""
+    point: Any
+    """(4, 8) points that bodies carry."""

@@ -1,6 +1,6 @@
 """Positions alone, over many designs: numbers change, the plan and the drivers' angles stay.
 
-The formulas are those of all groups, without rates (carrying/cases.py). Directions are kept as cosine and sine, so
+The formulas are those of all groups, without rates (cases.py). Directions are kept as cosine and sine, so
 nothing but a square root or two is left for a step; the angles of drivers are tabulated once for all designs. The sine
 of each group must go on smoothly from its last two values; where its other sign is as near, the design is given up as
 doubted.
@@ -12,10 +12,9 @@ import math
 from typing import Any, NamedTuple
 
 from mbsd.compiling.jit import threaded
-from mbsd.kinematics.groups.carrying.cases import PoseAlone
-from mbsd.kinematics.groups.carrying.columns import COS, SIN, SINE, X, Y
-from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED, WOUND
-from mbsd.kinematics.groups.solve_group import solve_group
+from mbsd.kinematics.groups.carried import COS, DOUBTED, SIN, SINE, SOLVED, WOUND, X, Y
+from mbsd.kinematics.groups.cases import PoseAlone
+from mbsd.kinematics.groups.solve import solve_group
 
 NEAR = 0.25
 """Part of the angle to the other branch by which the extrapolated motion may be missed."""

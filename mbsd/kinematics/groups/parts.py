@@ -3,38 +3,50 @@
 Where no group can be added, the smallest set of bodies that the equations left fix together is taken as a block: the
 irreducible blocks of J tell which bodies depend on which. So a gear train, a cam or a triad costs Newton-Raphson in its
 own few unknowns, and what stands on it is closed again. Joints that repeat others are left out, and looked at
-afterwards.
+afterwards. The bodies of a block, their connections and their equations become tables (blocks.py).
+
+Source: Duff, Erisman, Reid, Direct Methods for Sparse Matrices, ch. 6 (block triangular form).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.kinematics.groups.block_tables import Tables, fixed_bodies, hanging, tables_of
+from mbsd.base.running import Kept
+from mbsd.equations.relative.equation import ARM, AT, ROW
 from mbsd.kinematics.groups.blocks import (
+    ACROSS,
+    ALONG,
+    APART,
     BLOCK,
     BODIES,
     BODY,
     CARRIES,
     EQUATIONS,
+    FREE,
     HANGS,
+    LARGEST,
     PIN,
+    SLIDE,
+    SPECIAL,
     TRAIN,
     TREE_AT,
+    TURNED,
+    UNKNOWNS,
     WELD,
     Blocks,
     with_scratch,
 )
-from mbsd.kinematics.groups.groups import Groups
+from mbsd.kinematics.groups.groups import Groups, Link
 from mbsd.kinematics.groups.kinds.train import CARRIES_ON
 from mbsd.kinematics.groups.kinds.welded import welded
-from mbsd.kinematics.groups.links import Link
 from mbsd.kinematics.groups.plan import Plan, links_of_joints
 from mbsd.kinematics.groups.trains import Trains
+from mbsd.kinematics.steps import strides
 
 CLOSED, PINNED, BESIDE, EACH, WHOLE = 0.05, 0.22, 0.1, 0.2, 0.15
 """Measured costs of one time (us): of a closed group, of a block of one pinned body, of another block beside what each
@@ -51,7 +63,7 @@ class Parts(NamedTuple):
 
 
 def plan_parts(packed: Packed, q0: np.ndarray, pattern: np.ndarray, kept: np.ndarray) -> Parts | None:
-    """Groups and blocks at the closed pose q0 (3 nb,), or None where the mechanism is solved as a whole.
+    """Return groups and blocks at the closed pose q0 (3 nb,); None if the mechanism is solved as a whole.
 
     ``pattern`` (m, n): the entries of J that are not zero; ``kept`` (n,): the rows that fix all coordinates.
     """
@@ -110,11 +122,11 @@ class _Parts:
         for body, hangs, link in tree:
             assert link is not None
             if hangs == WELD:
-                self.plan.take(welded(self.plan.places, body, {"W": link}), (body,))
+                self.plan.add_group(welded(self.plan.places, body, {"W": link}), (body,))
                 continue
             sums = self.trains.sums[body]
             numbers = [*self.plan.places.pin(link), sums.constant, 0.0]
-            self.plan.take((TRAIN, (body, -1, link.other, 0), len(self.train), numbers), (body,))
+            self.plan.add_group((TRAIN, (body, -1, link.other, 0), len(self.train), numbers), (body,))
             self.train.append([len(self.shares), len(sums.shares)])
             self.shares += sums.shares.items()
         return True
@@ -135,10 +147,10 @@ class _Parts:
         self.near += block.near
         self._taken_rows = self._taken_rows | set(rows)
         bodies = [line[BODY] for line in block.tree]
-        self.plan.take((BLOCK, (bodies[0], -1, 0, 0), len(self.head) - 1, []), bodies)
+        self.plan.add_group((BLOCK, (bodies[0], -1, 0, 0), len(self.head) - 1, []), bodies)
 
     def cost(self) -> float:
-        """Cost of one time (us)."""
+        """Return cost of one time (us)."""
         blocks = [
             PINNED if head[BODIES] == 1 and self.tree[head[TREE_AT]][HANGS] == PIN else BESIDE + EACH * head[EQUATIONS]
             for head in self.head
@@ -146,7 +158,7 @@ class _Parts:
         return CLOSED * (len(self.plan.taken) - len(blocks)) + sum(blocks)
 
     def tables(self) -> Parts:
-        """As the kernels read them."""
+        """Return groups and blocks as the kernels read them."""
         carriers = {int(body) for kind, bodies, _, _ in self.plan.taken if kind < BLOCK for body in bodies[2:]}
         for head in self.head:
             own = {row[0] for row in self.tree[head[TREE_AT] : head[TREE_AT] + head[BODIES]]}
@@ -161,3 +173,167 @@ class _Parts:
         )  # fmt: skip
         left_out = set(range(len(self.packed.ws.phi))) - self.rows
         return Parts(self.plan.groups(), blocks, all(self.trains.proves(row) for row in left_out))
+
+
+HANGING = {"W": WELD, "R": PIN, "P": SLIDE}
+"""Links that a body may hang by, the best first."""
+ONE_ROW = {"slot": ACROSS, "along": ALONG, "distance": APART}
+
+
+class Hanging(NamedTuple):
+    """The bodies of a block as they hang from known ones and each other."""
+
+    tree: list[tuple[int, int, Link | None]]
+    """Body, how it hangs and by what, in the order of placing."""
+    rows: list[int]
+    """Rows of J: all that hold these bodies."""
+    equations: list[int]
+    """Those by which no body hangs; as many as unknowns."""
+
+
+def fixed_bodies(packed: Packed, known: Collection[int], left: Sequence[int], pattern: np.ndarray) -> set[int] | None:
+    """Return the fewest unknown bodies that rows ``left`` fix on their own; None if there are none.
+
+    ``pattern`` (m, n): the entries of J that are not zero. There may be fewer rows than coordinates.
+    """
+    if not len(left):
+        return None
+    arms = {int(entry[ROW]): int(entry[ARM]) for entry in packed.system.special}
+    unknown = tuple(body for body in range(1, len(packed.body_names)) if body not in known)
+    columns = np.concatenate([3 * body - 3 + np.arange(3) for body in unknown])
+    own = pattern[np.ix_(left, columns)]
+    key = own.tobytes(), unknown, tuple(arms.get(row, 0) for row in left)
+    fixed = _FIXED.get(key, lambda: _fixed(own, unknown, key[2]))
+    return None if fixed is None else set(fixed)
+
+
+_FIXED: Kept[tuple[int, ...] | None] = Kept()
+"""By all that they depend on."""
+
+
+def _fixed(own: np.ndarray, unknown: Sequence[int], arms: Sequence[int]) -> tuple[int, ...] | None:
+    """Return the fixed bodies from the entries of rows and bodies, and the arm of each row or 0."""
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
+
+    if own.shape[0] > own.shape[1]:
+        return None
+    column_of = maximum_bipartite_matching(csr_array(own), perm_type="column")
+    if (column_of < 0).any():
+        return None
+    loose = np.ones(own.shape[1], bool)
+    loose[column_of] = False
+    waits = np.zeros((len(unknown), len(unknown)), bool)
+    at = {body: k for k, body in enumerate(unknown)}
+    for r, arm in enumerate(arms):
+        fixed = column_of[r] // 3
+        waits[fixed, np.flatnonzero(own[r]) // 3] = True
+        if arm in at:
+            waits[fixed, at[arm]] = True
+    _, label = connected_components(csr_array(waits), directed=True, connection="strong")
+    free = [
+        np.flatnonzero(label == part)
+        for part in np.unique(label)
+        if not waits[np.ix_(label == part, label != part)].any() and not loose.reshape(-1, 3)[label == part].any()
+    ]
+    least = min(free, key=lambda members: (len(members), members[0]), default=None)
+    return None if least is None else tuple(unknown[int(k)] for k in least)
+
+
+def hanging(plan: Plan, members: set[int], left: Sequence[int]) -> Hanging | None:
+    """Return the block of ``members`` with the rows of ``left`` that hold it; None if it is too large."""
+    packed, inside = plan.packed, plan.known | members
+    rows = [row for row in left if all(int(body) in inside for body in packed.system.row_body[row])]
+    tree, joints = hanging_tree(plan, members)
+    unknowns = sum(UNKNOWNS[hangs] for _, hangs, _ in tree)
+    first = packed.first_row
+    held = {row for joint in joints for row in range(first[joint], first[joint + 1])}
+    equations = [row for row in rows if row not in held]
+    return Hanging(tree, rows, equations) if 0 < len(equations) == unknowns <= LARGEST else None
+
+
+def hanging_tree(plan: Plan, members: set[int]) -> tuple[list[tuple[int, int, Link | None]], set[int]]:
+    """Return bodies in the order of placing, how they hang and by what; the joints they hang by."""
+    placed, waiting = set(plan.known), sorted(members)
+    tree: list[tuple[int, int, Link | None]] = []
+    joints: set[int] = set()
+    while waiting:
+        hanging = None
+        for kind in HANGING:
+            for body in waiting:
+                links = [x for x in plan.links[body] if x.kind == kind and x.other in placed]
+                if links:
+                    hanging = body, HANGING[kind], links[0]
+                    break
+            if hanging:
+                break
+        body, hangs, link = hanging or (waiting[0], FREE, None)
+        tree.append((body, hangs, link))
+        if link is not None:
+            joints.add(link.joint)
+        waiting.remove(body)
+        placed.add(body)
+    return tree, joints
+
+
+class Tables(NamedTuple):
+    """Lines of one block in the tables of blocks.py."""
+
+    tree: list[list[int]]
+    frame: list[list[float]]
+    equations: list[list[int]]
+    arms: list[list[float]]
+    near: list[int]
+
+
+def tables_of(plan: Plan, block: Hanging) -> Tables | None:
+    """Return the tables of a block; None if an equation is half of a pin."""
+    members = {body: place for place, (body, _, _) in enumerate(block.tree)}
+    written = equations_of(plan.packed, block.equations, members)
+    if written is None:
+        return None
+    beside = {link.other for _, _, link in block.tree if link} | {b for row in written[0] for b in row[1:3]}
+    tree, frame, unknown = [], [], 0
+    for body, hangs, link in block.tree:
+        parent = link.other if link else 0
+        tree.append([body, members.get(parent, -1), parent, hangs, unknown])
+        frame.append([0.0] * 7 if link is None else plan.places.hanging(link))
+        unknown += UNKNOWNS[hangs]
+    return Tables(tree, frame, *written, sorted(beside - set(members) - {0}))
+
+
+def equations_of(
+    packed: Packed, rows: Sequence[int], place: dict[int, int]
+) -> tuple[list[list[int]], list[list[float]]] | None:
+    """Return the equations as tables; None if one of them is half of a pin."""
+    system, stride = packed.system, strides(packed)
+    special_at = {int(entry[ROW]): k for k, entry in enumerate(system.special)}
+    offset = {int(row[2]): float(system.angle_offset[k]) for k, row in enumerate(system.angle)}
+    length = {int(row[2]): float(system.distance_length[k]) for k, row in enumerate(system.distance)}
+    kind = {int(row[2]): (TURNED, row) for row in system.angle}
+    for name, number in ONE_ROW.items():
+        kind |= {int(row[2]): (number, row) for row in getattr(system, name)}
+    for row in system.point:
+        if int(row[2]) in rows and int(row[2]) + 1 in rows:
+            kind |= {int(row[2]): (ALONG, row), int(row[2]) + 1: (ACROSS, row)}
+    equations, numbers = [], []
+    for row in rows:
+        at = arm = address = 0
+        if row in special_at:
+            k = special_at[row]
+            entry = system.special[k]
+            equation, (i, j, _, motion) = SPECIAL, entry[:4]
+            at, arm, address = int(entry[AT]), int(entry[ARM]), int(system.address[k])
+        elif row in kind:
+            equation, (i, j, _, motion) = kind[row]
+        else:
+            return None
+        bi, bj = int(system.marker_body[i]), int(system.marker_body[j])
+        equations.append(
+            [equation, bi, bj, place.get(bi, -1), place.get(bj, -1), int(motion), at, arm, address]
+        )  # fmt: skip
+        constant = offset.get(row, length.get(row, 0.0))
+        limit = float(stride[motion]) if motion else 0.0
+        parts = (*system.marker_arm[i], *system.marker_axis[i], *system.marker_arm[j])
+        numbers.append([*(float(x) for x in parts), constant, limit, packed.size])
+    return equations, numbers

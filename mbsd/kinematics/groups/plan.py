@@ -14,13 +14,10 @@ from typing import NamedTuple
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.base.kept import Kept
+from mbsd.base.running import Kept
 from mbsd.kinematics.groups.blocks import BLOCK, BODIES, BODY, TRAIN, TREE_AT, Blocks
-from mbsd.kinematics.groups.groups import NUMBERS, Groups
-from mbsd.kinematics.groups.kind import Made
-from mbsd.kinematics.groups.links import Link, Places
-from mbsd.kinematics.groups.registry import KINDS, NAMES
-from mbsd.kinematics.groups.tables import tables_of
+from mbsd.kinematics.groups.groups import NUMBERS, Groups, Link, Made, Places
+from mbsd.kinematics.groups.tables import KINDS, NAMES, tables_of
 from mbsd.model.joint import Joint
 
 LETTERS = {
@@ -39,7 +36,7 @@ DRIVERS = "DA"
 
 
 def plan_groups(packed: Packed, q0: np.ndarray, redundant_rows: int) -> Groups | None:
-    """The groups of a mechanism at its closed pose q0 (3 nb,), or None where it has no such plan."""
+    """Return the groups of a mechanism at its closed pose q0 (3 nb,), or None where it has no such plan."""
     if redundant_rows:
         return None
     numbers = packed.numbers()
@@ -55,7 +52,7 @@ _GROUPS: Kept[Groups | None] = Kept()
 
 
 def _planned(packed: Packed, q0: np.ndarray) -> Groups | None:
-    """The same, found anew."""
+    """Return the groups of a mechanism without a look at those kept; None without such a plan."""
     links = links_of(packed)
     if links is None:
         return None
@@ -80,7 +77,7 @@ def describe(groups: Groups, blocks: Blocks, names: list[str]) -> str:
 
 
 def links_of(packed: Packed) -> list[list[Link]] | None:
-    """(nb,) links of each body; None if a joint is of a kind that no group covers."""
+    """Return (nb,) links of each body; None if a joint is of a kind that no group covers."""
     everything = range(len(packed.joints))
     if any(link_kind(packed.joints[number]) is None for number in everything):
         return None
@@ -88,13 +85,13 @@ def links_of(packed: Packed) -> list[list[Link]] | None:
 
 
 def link_kind(joint: Joint) -> str | None:
-    """How groups call a joint or driver; None if none covers it."""
+    """Return how groups call a joint or driver; None if none covers it."""
     kind = LETTERS.get(tuple(joint.kind.constraints))
     return None if kind is None or ((kind in DRIVERS) != joint.kind.driven and kind != "L") else kind
 
 
 def links_of_joints(packed: Packed, numbers: Iterable[int]) -> list[list[Link]]:
-    """(nb,) links of each body by these joints, as far as groups cover them."""
+    """Return (nb,) links of each body by these joints, as far as groups cover them."""
     system = packed.system
     links: list[list[Link]] = [[] for _ in packed.body_names]
     angle_at = {int(row[2]): k for k, row in enumerate(system.angle)}
@@ -126,7 +123,7 @@ class Recipe(NamedTuple):
     """Whether ``make`` takes its links by their letters."""
 
     def made(self, at: Places, links: Sequence[Link]) -> Made | None:
-        """The group, from links that stand for its own."""
+        """Return the group, from links that stand for its own."""
         return self.make(at, *self.bodies, *([{link.kind: link for link in links}] if self.by_letter else links))
 
 
@@ -145,7 +142,7 @@ class Plan:
         self.pairs = list(self.singles)
 
     def copy(self) -> Plan:
-        """A plan of its own to go on with."""
+        """Return a plan of its own to go on with."""
         out = copy.copy(self)
         out.links = list(self.links)
         out.known, out.used, out.taken = set(self.known), set(self.used), list(self.taken)
@@ -169,7 +166,7 @@ class Plan:
         heapq.heappush(self.singles, body)
 
     def groups(self) -> Groups:
-        """As tables."""
+        """Return the groups as tables."""
         return tables_of(self.taken)
 
     def add_single(self) -> bool:
@@ -185,7 +182,7 @@ class Plan:
                 made = kind.of_one(self.places, body, by_kind) if kinds in kind.one and kind.of_one else None
                 if made is not None:
                     assert kind.of_one is not None
-                    self._take(made, Recipe(kind.of_one, (body,), tuple(links), by_letter=True))
+                    self._use(made, Recipe(kind.of_one, (body,), tuple(links), by_letter=True))
                     return True
         return False
 
@@ -212,12 +209,12 @@ class Plan:
                     made = kind.of_two(self.places, a, b, *links) if kinds in kind.two and kind.of_two else None
                     if made is not None:
                         assert kind.of_two is not None
-                        self._take(made, Recipe(kind.of_two, (a, b), links, by_letter=False))
+                        self._use(made, Recipe(kind.of_two, (a, b), links, by_letter=False))
                         return True
         return False
 
     def numbers(self) -> np.ndarray:
-        """(g, 14) numbers of the groups."""
+        """Return (g, 14) numbers of the groups."""
         out = np.zeros((len(self.taken), NUMBERS))
         for row, (_, _, _, numbers) in zip(out, self.taken, strict=True):
             row[: len(numbers)] = numbers
@@ -250,11 +247,11 @@ class Plan:
                  for name in ("angle_offset", "distance_length")]  # fmt: skip
         return all(a.tobytes() == b.tobytes() for a, b in pairs)
 
-    def _take(self, made: Made, recipe: Recipe) -> None:
+    def _use(self, made: Made, recipe: Recipe) -> None:
         self.used.update(link.joint for link in recipe.links)
-        self.take(made, recipe.bodies, recipe)
+        self.add_group(made, recipe.bodies, recipe)
 
-    def take(self, made: Made, bodies: Sequence[int], recipe: Recipe | None = None) -> None:
+    def add_group(self, made: Made, bodies: Sequence[int], recipe: Recipe | None = None) -> None:
         """Add a group, whose bodies are then known."""
         self.taken.append(made)
         self.recipes.append(recipe)

@@ -1,7 +1,7 @@
 """The compiled closed forms: positions, velocities and accelerations of all groups at all times.
 
 Each kind's equations stand in its file in kinds/, blocks of Newton-Raphson in newton/. The squared sine of a group
-tells whether it closes, and its rate tells whether it does between two poses (carrying/rates.py).
+tells whether it closes, and its rate tells whether it does between two poses (carried.py).
 
 The branch is that of the start. A step is doubted, and a pose between is asked for, where the squared sine may vanish
 between its ends, where a body turns too far to count turns, or where a law moves too far or jumps.
@@ -12,18 +12,73 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from mbsd.compiling.jit import internal, kernel
-from mbsd.kinematics.groups.blocks import BLOCK, BODIES, BODY, DOUBTED_BEFORE, NEAR_AT, ROWS_AT, TRAIN, TREE_AT
-from mbsd.kinematics.groups.carrying.cases import AlongLaws
-from mbsd.kinematics.groups.carrying.columns import CHANGE, COS, OMEGA, SIN, SINE, X, Y
-from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED, dip, wound
-from mbsd.kinematics.groups.groups import DRIVEN, FIRST, LAW, SECOND, WATCHED
-from mbsd.kinematics.groups.kinds.driven import SENSE
+from mbsd.compiling.jit import internal, kernel, merged
+from mbsd.kinematics.groups.blocks import (
+    BLOCK,
+    BODIES,
+    BODY,
+    DOUBTED_BEFORE,
+    NEAR_AT,
+    ROWS_AT,
+    TRAIN,
+    TREE_AT,
+    Block,
+    History,
+    Work,
+)
+from mbsd.kinematics.groups.carried import CHANGE, COS, DOUBTED, OMEGA, SIN, SINE, SOLVED, X, Y, dip, wound
+from mbsd.kinematics.groups.cases import AlongLaws
+from mbsd.kinematics.groups.groups import (
+    DRIVEN,
+    FIRST,
+    KIND,
+    LAW,
+    PRP,
+    ROD,
+    RPR,
+    RRP,
+    RRR,
+    SECOND,
+    WATCHED,
+    WELDED,
+    YOKE,
+)
+from mbsd.kinematics.groups.kinds.driven import SENSE, solve_driven
+from mbsd.kinematics.groups.kinds.prp import solve_prp
+from mbsd.kinematics.groups.kinds.rod import solve_rod
+from mbsd.kinematics.groups.kinds.rpr import solve_rpr
+from mbsd.kinematics.groups.kinds.rrp import solve_rrp
+from mbsd.kinematics.groups.kinds.rrr import solve_rrr
+from mbsd.kinematics.groups.kinds.slide import solve_slide
 from mbsd.kinematics.groups.kinds.train import CARRIES_ON, solve_train
+from mbsd.kinematics.groups.kinds.welded import solve_welded
+from mbsd.kinematics.groups.kinds.yoke import solve_yoke
 from mbsd.kinematics.groups.newton.block import solve_block
-from mbsd.kinematics.groups.newton.records import Block, History, Work
-from mbsd.kinematics.groups.solve_group import solve_group
-from mbsd.kinematics.law_step import jumps
+from mbsd.kinematics.newton import jumps
+
+
+@merged
+def solve_group(case, e):
+    """Place the bodies of group e and fill their rates; see kinds/prp.py. Returns SOLVED, or why not."""
+    kind = case.group[e, KIND]
+    if kind == RRR:
+        return solve_rrr(case, e)
+    if kind == DRIVEN:
+        return solve_driven(case, e)
+    if kind == WELDED:
+        return solve_welded(case, e)
+    if kind == RRP:
+        return solve_rrp(case, e)
+    if kind == RPR:
+        return solve_rpr(case, e)
+    if kind == YOKE:
+        return solve_yoke(case, e)
+    if kind == PRP:
+        return solve_prp(case, e)
+    if kind == ROD:
+        return solve_rod(case, e)
+    return solve_slide(case, e)
+
 
 CLOSE_ENDS = 2e-4
 """Squared sine of a group at the first or last step below which a change point may be near."""
@@ -45,7 +100,7 @@ def give(body, rate, b, q, v, a, turn):
 
 @internal
 def take(body, rate, b, q, v, a, turn):
-    """Pose and rates of body b from a row of the motion to the closed forms."""
+    """Take pose and rates of body b from a row of the motion to the closed forms."""
     at = 3 * b
     body[b, X] = q[at]
     body[b, Y] = q[at + 1]
@@ -59,7 +114,7 @@ def take(body, rate, b, q, v, a, turn):
 
 @internal
 def turned_on(body, b, before):
-    """Angle of body b (rad), whose cosine and sine are known, next to the angle ``before``."""
+    """Return angle of body b (rad), whose cosine and sine are known, next to the angle ``before``."""
     angle = math.atan2(body[b, SIN], body[b, COS])
     return angle + 2.0 * math.pi * math.floor((before - angle) / (2.0 * math.pi) + 0.5)
 
@@ -167,8 +222,14 @@ def solve_groups(groups, blocks, start, motion, determinant, poses, tiny, first_
             before[e, 1] = n[CHANGE]
             if k == 0:
                 before[e, 2] = n[SINE]
+    return SOLVED_CLOSE if comes_close(before) else SOLVED, times.shape[0], 0.0
+
+
+@internal
+def comes_close(before):
+    """Return True if both poses of a group are close to each other at the first or the last row."""
     for e in range(before.shape[0]):
         for c in range(0, 3, 2):
             if 0.0 < before[e, c] < CLOSE_ENDS:
-                return SOLVED_CLOSE, times.shape[0], 0.0
-    return SOLVED, times.shape[0], 0.0
+                return True
+    return False

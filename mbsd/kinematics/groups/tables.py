@@ -2,6 +2,8 @@
 
 Lines of a link are divided by its squared length, so that turning it along a vector of that length is two products;
 constant angles are kept as cosine and sine. Columns are named in each kind's file in kinds/.
+
+A new kind is its file in kinds/, its code (groups.py), a line in KINDS here, and one in solve.py.
 """
 
 from __future__ import annotations
@@ -11,17 +13,31 @@ from collections.abc import Sequence
 import numpy as np
 
 from mbsd.kinematics.groups.blocks import BLOCK, TRAIN
-from mbsd.kinematics.groups.carrying.branch import FLOOR
-from mbsd.kinematics.groups.carrying.columns import AVOID, SIGN, SINE
-from mbsd.kinematics.groups.carrying.columns import NUMBERS as WIDTH
-from mbsd.kinematics.groups.groups import COORDINATE, KIND, LAW, NUMBERS, THIRD, WATCHED, Groups
-from mbsd.kinematics.groups.kind import Made
+from mbsd.kinematics.groups.carried import AVOID, SIGN, SINE
+from mbsd.kinematics.groups.carried import NUMBERS as WIDTH
+from mbsd.kinematics.groups.cases import FLOOR
+from mbsd.kinematics.groups.groups import COORDINATE, KIND, LAW, NUMBERS, THIRD, WATCHED, Groups, Made
+from mbsd.kinematics.groups.kinds import driven, prp, rod, rpr, rrp, rrr, slide, welded, yoke
 from mbsd.kinematics.groups.kinds.train import BODY_3
-from mbsd.kinematics.groups.registry import BRANCH, KINDS
+
+KINDS = (
+    driven.KIND,
+    welded.KIND,
+    rrr.KIND,
+    rrp.KIND,
+    rpr.KIND,
+    yoke.KIND,
+    prp.KIND,
+    rod.KIND,
+    slide.KIND,
+)
+NAMES = tuple(kind.name for kind in KINDS)
+BRANCH = {kind.code: kind.branch for kind in KINDS if kind.branch is not None}
+"""Where the sign of the assembly stands."""
 
 
 def tables_of(taken: Sequence[Made]) -> Groups:
-    """The groups of a plan, in the order of their solution."""
+    """Return the groups of a plan, in the order of their solution."""
     kind = np.array([code for code, _, _, _ in taken], np.int64)
     body = np.array([bodies for _, bodies, _, _ in taken], np.int64).reshape(-1, 4)
     motion = np.array([law for _, _, law, _ in taken], np.int64)
@@ -44,7 +60,7 @@ def tables_of(taken: Sequence[Made]) -> Groups:
 
 
 def rows_of(kind: np.ndarray, number: np.ndarray) -> np.ndarray:
-    """(..., g, 21) of Groups.row, from (..., g, 14) numbers of groups of these kinds."""
+    """Return (..., g, 21) of Groups.row, from (..., g, 14) numbers of groups of these kinds."""
     out = np.zeros((*number.shape[:-1], WIDTH))
     for e, code in enumerate(kind):
         n = np.moveaxis(number[..., e, :], -1, 0)

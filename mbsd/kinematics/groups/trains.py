@@ -19,8 +19,7 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.equations.assembly import residual_and_jacobian
-from mbsd.equations.constraints.relative import ARM, AT, MARKER_I, MARKER_J, MOTION, ROW
-from mbsd.equations.relative.equation import OWN, WRAPS
+from mbsd.equations.relative.equation import ARM, AT, MARKER_I, MARKER_J, MOTION, OWN, ROW, WRAPS
 
 SAME_POINT = 1e-12
 """Points of a body within this part of the mechanism's size are one."""
@@ -131,7 +130,7 @@ class Trains:
         return all(int(entry[ARM]) in self._at_one_pin(int(entry[column])) for column in (MARKER_I, MARKER_J))
 
     def _at_one_pin(self, marker: int) -> dict[int, np.ndarray]:
-        """Bodies that pins hold together at the point of a marker, and their arms to it."""
+        """Return bodies that pins hold together at the point of a marker, and their arms to it."""
         system, near = self.packed.system, SAME_POINT * self.packed.size
         arms = {int(system.marker_body[marker]): system.marker_arm[marker]}
         waiting = list(arms)

@@ -14,8 +14,7 @@ import numpy as np
 
 from mbsd.arrays.reactions import marker_places, relative_velocity
 from mbsd.base.errors import SimulationError
-from mbsd.equations.constraints.relative import AT
-from mbsd.equations.relative.equation import WRAPS
+from mbsd.equations.relative.equation import AT, WRAPS
 from mbsd.model.teeth import with_radii
 
 if TYPE_CHECKING:
@@ -68,7 +67,7 @@ class FreeWheels:
         )
 
     def _rate(self, state: np.ndarray, i: int, j: int) -> np.ndarray:
-        """How the line of centres changes (m/s)."""
+        """Return how the line of centres changes (m/s)."""
         ends = (relative_velocity(self.packed, state[:1], state[1:], None, k)[0] for k in (j, i))
         return next(ends) - next(ends)
 

@@ -1,23 +1,34 @@
-"""Limits of joints; a driven motion that passes one is an error with the time and the number.
+"""Limits of joints and branches of curves: a driven motion that leaves them raises an error.
 
-In a simulation they are stops without rebound; ``m.stop`` makes stops with one.
+In a simulation limits are stops without rebound; ``m.stop`` makes stops with one.
 
     revolute               angle of marker j against marker i (rad), whole turns counted
     prismatic, pin_in_slot place of marker j along the x axis of marker i (m)
 
 ``limits=(lower, upper)``; None on one side is a one-way stop.
+
+A sweep predicts so well that a point's nearest foot on a curve that crosses itself is on the right branch. Where a foot
+jumps nevertheless, the point may have left its branch.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.arrays.curve_branches import CurveBranches
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import marker_places
-from mbsd.base.errors import LimitError
+from mbsd.base.errors import BranchError, LimitError
+from mbsd.equations.relative.curve_pieces import CLOSED, FARTHEST, SPAN
+from mbsd.equations.system import LAST
+
+if TYPE_CHECKING:
+    from mbsd.arrays.packing import Packed
+
 
 SLACK = 1e-9
 """In sizes and rad: a motion may touch its limit."""
@@ -39,7 +50,7 @@ class Limit:
 
 
 def limits_of(packed: Packed) -> list[Limit]:
-    """The limited joints of a mechanism."""
+    """Return the limited joints of a mechanism."""
     limits = []
     for joint, (i, j) in zip(packed.joints, packed.markers, strict=True):
         given = joint.params.get("limits")
@@ -117,7 +128,7 @@ def _with_peaks(value: np.ndarray) -> np.ndarray:
 
 
 def _crossing(limit: Limit, times: np.ndarray, value: np.ndarray, at: int) -> float:
-    """Time when the limit is met, by a straight line between outputs."""
+    """Return time when the limit is met, by a straight line between outputs."""
     if at == 0:
         return float(times[0])
     end = limit.lower if value[at] < limit.lower else limit.upper
@@ -127,3 +138,32 @@ def _crossing(limit: Limit, times: np.ndarray, value: np.ndarray, at: int) -> fl
 
 def _said(value: float, limit: Limit) -> str:
     return f"{math.degrees(value):.6g} degrees" if limit.angular else f"{value:.6g} m"
+
+
+def refuse_jumps(packed: Packed, times: np.ndarray, q: np.ndarray) -> None:
+    """Raise BranchError where a point leaves the branch of its curve between poses q (T, 3 nb) of a sweep."""
+    following = CurveBranches(packed)
+    if not following.rows:
+        return
+    for k, pose in enumerate(q):
+        before = [float(row.own[LAST]) for row in following.rows]
+        following.accept([math.nan] * len(before))
+        feet, _ = following.moved(pose)
+        following.accept(before)
+        if k:
+            for (i, j, numbers, own), u in zip(following.rows, feet, strict=True):
+                way = abs(u - own[LAST])
+                way = min(way, abs(numbers[SPAN] - way)) if numbers[CLOSED] else way
+                if way > numbers[FARTHEST]:
+                    name = next(
+                        joint.name
+                        for joint, place in zip(packed.specials.joints, packed.specials.places, strict=True)
+                        if place[:2] == (i, j)
+                    )
+                    raise BranchError(
+                        f"{packed.name}: joint '{name}': its curve crosses itself. Between t = {times[k - 1]:.6g} and "
+                        f"{times[k]:.6g} s the point goes {way:.3g} m along it, more than {numbers[FARTHEST]:.3g} m: "
+                        "it may be on the other branch. Take more steps; if that does not help, simulate the motion."
+                    )
+        following.accept(feet)
+    following.accept([math.nan] * len(following.rows))

@@ -1,26 +1,32 @@
 """Assembled pose at the start: rough angles, a walk over joints for places, then Gauss-Newton.
 
 Steps are damped (least norm, limited length, halved until the residual falls), so the pose closes near where the
-author put it. Bodies without a rough angle are tried at several angles.
+author put it. Bodies without a rough angle are tried at several angles. If none closes, the error names the joint that
+stays open, and a link that is longer than the others of its loop together.
+
+Starts of many rows (dynamics/batch/starts.py) and of large mechanisms (dynamics/prepare/large.py) have loops of their
+own: the first solves all rows in one call, the second by sparse factors. Held values are as here.
 """
 
 from __future__ import annotations
 
 import heapq
 import math
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from mbsd.arrays.force_phases import take_force_phases
 from mbsd.arrays.packing import Packed
+from mbsd.arrays.starts import take_force_phases
 from mbsd.base.errors import AssemblyError
-from mbsd.base.kept import Kept
+from mbsd.base.running import Kept
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.held_values import held_values, is_choice, places_of
 from mbsd.kinematics.pose.ideal_joints import closed_ideally
-from mbsd.kinematics.pose.open_loops import turned, why_open
 from mbsd.kinematics.pose.phases import let_phases_go, refuse_impossible, take_phases
+from mbsd.model.body import Marker
+from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
 
 CLOSED = 1e-10
@@ -59,7 +65,7 @@ def assemble(m: Model, packed: Packed, time: float) -> np.ndarray:
 
 
 def _assemble(m: Model, packed: Packed, time: float) -> np.ndarray:
-    """The same of a mechanism whose joints are all there."""
+    """Return the closed pose of a mechanism whose joints all hold."""
     drive = packed.drives(np.array([time]))[0]
     numbers = packed.numbers()
     if numbers is None:
@@ -75,7 +81,7 @@ def _assemble(m: Model, packed: Packed, time: float) -> np.ndarray:
 
 
 def _nearest(m: Model, packed: Packed, drive: np.ndarray) -> _Nearest:
-    """The pose nearest to a closed one, found anew; drive (motions + 1, 3)."""
+    """Return the pose nearest to a closed one, found anew; drive (motions + 1, 3)."""
     best: tuple[float, np.ndarray] | None = None
     for attempt in range(ATTEMPTS):
         q = rough_pose(m, packed, drive, attempt)
@@ -92,7 +98,7 @@ def _nearest(m: Model, packed: Packed, drive: np.ndarray) -> _Nearest:
 
 
 def close_with_phases(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray) -> tuple[np.ndarray, float]:
-    """Close all rows that say where bodies are, with bodies turned as given; the others mesh as they then stand."""
+    """Close rows of places, with bodies turned as given; the others mesh as bodies then stand."""
     let_phases_go(packed)
     q, worst = close(packed, q, drive)
     if worst <= CLOSED and packed.specials.phased:
@@ -123,8 +129,7 @@ def close(packed: Packed, q: np.ndarray, drive: np.ndarray, rows: int | None = N
         if not (np.isfinite(jac).all() and np.isfinite(phi).all()):
             return q, math.inf
         step = _least(jac, -phi)
-        longest = length_of_step(step)
-        step *= min(1.0, LONGEST_STEP / longest) if longest > 0 else 1.0
+        step, longest = damped(step)
         before, old = float(np.linalg.norm(phi)), q.copy()
         for _ in range(12):
             q[3:] = old[3:] + step * column_scale
@@ -138,7 +143,7 @@ def close(packed: Packed, q: np.ndarray, drive: np.ndarray, rows: int | None = N
 
 
 def given_coordinates(m: Model, packed: Packed) -> list[tuple[int, float]]:
-    """Coordinates (index in (3 nb,), value) that start_near gives, in its order."""
+    """Return coordinates (index in (3 nb,), value) that start_near gives, in its order."""
     given = []
     number = {name: b for b, name in enumerate(packed.body_names)}
     for name, start in m.starts.items():
@@ -152,18 +157,18 @@ def given_coordinates(m: Model, packed: Packed) -> list[tuple[int, float]]:
 
 
 def nearest_turn(q: np.ndarray, c: int, value: float) -> float:
-    """``value`` of coordinate c, for an angle up to whole turns."""
+    """Return ``value`` of coordinate c, for an angle up to whole turns."""
     return value + 2 * math.pi * round((q[c] - value) / (2 * math.pi)) if c % 3 == 2 else value
 
 
 def start_targets(m: Model, packed: Packed, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the coordinates that start_near gives, and their values (k,) with angles as near to q as turns allow."""
+    """Return the coordinates that start_near gives, and values (k,) within half a turn of q."""
     given = given_coordinates(m, packed)
     return np.array([c for c, _ in given], np.int64), np.array([nearest_turn(q, c, value) for c, value in given])
 
 
 def close_holding(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray) -> np.ndarray:
-    """Return the pose (3 nb,) that closes and holds what start_near gives as far as the joints leave it free.
+    """Return the closed pose (3 nb,) that holds what start_near gives as far as the joints let it.
 
     ``q``: a closed pose, which is returned where no such pose is near. Directions in which places are held may turn on
     the way.
@@ -184,19 +189,22 @@ def close_holding(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray) ->
         if np.abs(phi).max() <= 1e-13:
             break
         jac = np.vstack([rows, held @ units])
-        step = np.linalg.lstsq(jac, -phi, rcond=1e-10)[0]
-        longest = length_of_step(step)
+        step, longest = damped(np.linalg.lstsq(jac, -phi, rcond=1e-10)[0])
         if longest < 1e-15:
             break
-        q[3:] += step * min(1.0, LONGEST_STEP / longest) * column_scale
+        q[3:] += step * column_scale
     residual_and_jacobian(packed.system, q, drive, packed.ws)
     return q if np.abs(packed.ws.phi * row_scale).max(initial=0.0) <= CLOSED else closed
 
 
-def length_of_step(step: np.ndarray) -> float:
-    """Return how far ``step`` (n,) moves or turns a body, in sizes or rad; the world's axes do not matter."""
+def damped(step: np.ndarray) -> tuple[np.ndarray, float]:
+    """Return ``step`` (n,) no longer than ``LONGEST_STEP``, and how far it moves or turns a body, in sizes or rad.
+
+    The world's axes do not matter.
+    """
     x, y, angle = step.reshape(-1, 3).T
-    return float(np.maximum(np.hypot(x, y), np.abs(angle)).max(initial=0.0))
+    longest = float(np.maximum(np.hypot(x, y), np.abs(angle)).max(initial=0.0))
+    return step * (min(1.0, LONGEST_STEP / longest) if longest > 0 else 1.0), longest
 
 
 def _least(jac: np.ndarray, right: np.ndarray) -> np.ndarray:
@@ -225,7 +233,7 @@ def rough_pose(m: Model, packed: Packed, drive: np.ndarray, attempt: int) -> np.
 
 
 def placed_pose(m: Model, packed: Packed, angle: np.ndarray) -> np.ndarray:
-    """(3 nb,) of bodies at angles (nb,), at places that ``start_near`` gives or a walk over the joints."""
+    """Return (3 nb,) bodies at angles (nb,), placed by ``start_near`` or by a walk over the joints."""
     q = np.zeros((len(packed.body_names), 3))
     q[:, 2] = angle
     placed = {0}
@@ -308,7 +316,7 @@ def _marker_place(packed: Packed, q: np.ndarray, marker: int) -> np.ndarray:
 
 
 def unwind_angles(packed: Packed, q: np.ndarray) -> None:
-    """Angles of welds and sliders hold up to whole turns: take the turn nearest to the rough pose."""
+    """Take the whole turns of welds and sliders that are nearest to the rough pose."""
     system = packed.system
     turns = np.zeros(len(system.angle))
     for k, (i, j, _row, motion) in enumerate(system.angle):
@@ -317,3 +325,90 @@ def unwind_angles(packed: Packed, q: np.ndarray) -> None:
             turns[k] = round(gap / (2 * math.pi))
     if turns.any():
         packed.system = system.changed(angle_offset=system.angle_offset + 2 * math.pi * turns)
+
+
+def why_open(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray, time: float) -> str:
+    """Return the message for an open pose q (3 nb,): the joint, its gap, and the link too short."""
+    residual_and_jacobian(packed.system, q, drive, packed.ws)
+    phi = packed.ws.phi
+    gaps = [float(np.abs(phi[a:b] * packed.row_scale()[a:b]).max()) for a, b in pairwise(packed.first_row)]
+    worst = int(np.argmax(gaps))
+    joint = packed.joints[worst]
+    rows = packed.rows_of(worst)
+    what = "driver" if joint.kind.driven else "joint"
+    gap = f"{1000 * float(np.linalg.norm(phi[rows])):.3g} mm"
+    if packed.row_scale()[rows][0] == 1.0 and len(phi[rows]) == 1 and joint.kind.angular:
+        gap = f"{math.degrees(float(phi[rows][0])):.3g} degrees"
+    hint = _short_links(m, packed, joint, drive)
+    return (
+        f"{m.name}: the links do not close at t = {time:.6g} s: {what} {joint.name} stays open by {gap} at best. "
+        + (hint or "Check the lengths and joint places, or give other rough angles with start_near.")
+    )
+
+
+def _short_links(m: Model, packed: Packed, joint: Joint, drive: np.ndarray) -> str:
+    """Return in a loop of pinned links: the one that is longer than the others together, if so."""
+    loop = _loop_through(m, joint)
+    if loop is None:
+        return ""
+    driven = {
+        j.j.body.name: float(drive[k + 1, 0])
+        for k, j in enumerate(m.drivers.values())
+        if j.kind.angular and j.i.body.name == "ground" and j.motion is not None
+    }
+    parts: list[tuple[str, np.ndarray, bool]] = []  # bodies, vector in the world if it is fixed, fixed?
+    for body, entry, leave in loop:
+        vector = np.array([leave.x - entry.x, leave.y - entry.y])
+        fixed = body == "ground" or body in driven
+        parts.append((body, turned(driven.get(body, 0.0), vector) if fixed else vector, fixed))
+    held = [part for part in parts if part[2]]
+    spans = [(name, float(np.linalg.norm(vector))) for name, vector, fixed in parts if not fixed]
+    if held:
+        label = " and ".join(name for name, _, _ in held)
+        spans.append((label, float(np.linalg.norm(sum(vector for _, vector, _ in held)))))
+    order = list(m.bodies)
+    spans.sort(key=lambda span: order.index(span[0]) if span[0] in order else -1)
+    longest = max(spans, key=lambda span: span[1])
+    others = [span for span in spans if span is not longest]
+    reach = sum(length for _, length in others)
+    if longest[1] <= reach:
+        return ""
+    together = " + ".join(name for name, _ in others)
+    return (
+        f"The links are too short: {together} = {reach:.4g} m must reach {longest[1]:.4g} m "
+        f"({'between the ends of ' if longest[0].count(' and ') else ''}{longest[0]})."
+    )
+
+
+class _Crossing(NamedTuple):
+    """A body on a loop of pins, with the markers by which the loop enters and leaves it."""
+
+    body: str
+    entry: Marker
+    exit: Marker
+
+
+def _loop_through(m: Model, joint: Joint) -> list[_Crossing] | None:
+    """Return the shortest loop of pins through ``joint`` (any loop if it is no pin), or None."""
+    pins = [j for j in m.joints.values() if j.kind.pair == "pin"]
+    if joint not in pins:
+        loops = [loop for pin in pins if (loop := _loop_through(m, pin))]
+        return min(loops, key=len, default=None)
+    reached: list[tuple[list[_Crossing], Marker]] = [([], joint.j)]  # bodies crossed, and the marker now entered by
+    seen = {joint.j.body.name}
+    for crossed, entry in reached:  # grows while it is walked: breadth first
+        name = entry.body.name
+        if name == joint.i.body.name:
+            return [*crossed, _Crossing(name, entry, joint.i)]
+        for pin in pins:
+            for here, there in ((pin.i, pin.j), (pin.j, pin.i)):
+                if pin is not joint and here.body.name == name and there.body.name not in seen:
+                    seen.add(there.body.name)
+                    reached.append(([*crossed, _Crossing(name, entry, here)], there))
+    return None
+
+
+def turned(angle: float, vector: np.ndarray) -> np.ndarray:
+    """Return ``vector`` (2,) turned by ``angle`` (rad)."""
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]])

@@ -1,4 +1,4 @@
-"""Given values of a start that are held: rows W of the given ones, after the joints, first given first held.
+"""Given values of a start that are held: rows W after the joints, first given first held.
 
     rows of J, then of what is given, are independent        such a value is held as it is
     of a place x, y the joints leave one direction u alone   u . (x, y) is held, the nearest that the body can come
@@ -24,7 +24,7 @@ ALIGNED = 1e-12
 
 
 def held_values(jac: np.ndarray, given: np.ndarray, places: Sequence[tuple[int, int]]) -> tuple[list[int], np.ndarray]:
-    """Return independent rows of ``jac`` (m, n), and W (h, k) for rows ``given`` (k, n), both in sizes and rad.
+    """Return independent rows of ``jac`` (m, n), and W (h, k) for ``given`` (k, n), in sizes and rad.
 
     ``places``: pairs of given rows that are x and y of one place.
     """
@@ -49,7 +49,7 @@ def half_held(chosen: Sequence[int], places: Sequence[tuple[int, int]]) -> list[
 
 
 def free_direction(before: np.ndarray, pair: np.ndarray) -> np.ndarray:
-    """Return u (..., 2), the direction in rows ``pair`` (..., 2, n) of which rows ``before`` (..., r, n) leave most."""
+    """Return u (..., 2): the direction in rows ``pair`` (..., 2, n) that ``before`` (..., r, n) leave most."""
     basis = np.linalg.qr(np.swapaxes(before, -1, -2))[0]
     left = pair - (pair @ basis) @ np.swapaxes(basis, -1, -2)
     u = np.linalg.eigh(left @ np.swapaxes(left, -1, -2))[1][..., -1]
@@ -64,7 +64,7 @@ def places_of(coordinates: Sequence[int]) -> list[tuple[int, int]]:
 
 
 def independent_rows(jac: np.ndarray) -> list[int]:
-    """Return the rows of ``jac`` (m, n) independent of those before them (Gram-Schmidt, twice for rounding)."""
+    """Return rows of ``jac`` (m, n) independent of those before them (Gram-Schmidt, done twice)."""
     if jac.size > SMALL:
         return _independent(jac)
     return list(_kept_independent(jac.tobytes(), jac.shape))

@@ -11,9 +11,9 @@ from typing import TypeVar
 
 from mbsd.arrays.packing import Packed, pack
 from mbsd.arrays.relative import FIRST_OWN
-from mbsd.arrays.start_state import copied
+from mbsd.arrays.starts import copied
 from mbsd.base.errors import AssemblyError
-from mbsd.equations.constraints.relative import ACTIVE, ARM, AT
+from mbsd.equations.relative.equation import ACTIVE, ARM, AT
 from mbsd.model.mechanism import Model
 
 Start = TypeVar("Start")
@@ -21,7 +21,7 @@ Start = TypeVar("Start")
 
 
 def with_ideal_joints(m: Model) -> Model | None:
-    """The mechanism with the joints that hold at its start; None where all its joints are there."""
+    """Return the mechanism with the joints that hold at its start; None where all its joints are there."""
     ideal = {name: force.kind.ideal(force) for name, force in m.forces.items() if force.kind.ideal is not None}
     joints = {name: joint for name, joint in ideal.items() if joint is not None}
     if not joints:
@@ -34,7 +34,7 @@ def with_ideal_joints(m: Model) -> Model | None:
 
 @contextmanager
 def closing_as(m: Model, joined: Model) -> Iterator[None]:
-    """Where ``joined`` does not close, the error says what may start open. Raises AssemblyError."""
+    """Yield where ``joined`` does not close, the error says what may start open. Raises AssemblyError."""
     try:
         yield
     except AssemblyError as error:
@@ -46,7 +46,7 @@ def closing_as(m: Model, joined: Model) -> Iterator[None]:
 
 
 def packed_like(joined: Model, packed: Packed) -> Packed:
-    """``joined`` as arrays, with the laws of ``packed``, which are ready for its times."""
+    """Return ``joined`` as arrays, with the laws of ``packed``, which are ready for its times."""
     out = pack(joined)
     out.motions = packed.motions
     return out

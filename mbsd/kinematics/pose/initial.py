@@ -16,10 +16,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mbsd.arrays.force_phases import take_force_phases
 from mbsd.arrays.inertias import inertia_of, least_energy, usual_inertia
 from mbsd.arrays.packing import Packed
-from mbsd.base.kept import Kept
+from mbsd.arrays.starts import take_force_phases
+from mbsd.base.running import Kept
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.close import assemble, close, close_holding, start_targets
 from mbsd.kinematics.pose.held_values import held_values
@@ -51,7 +51,7 @@ _CONSISTENT: Kept[tuple[Initial, np.ndarray]] = Kept()
 
 
 def consistent(m: Model, packed: Packed, time: float) -> Initial:
-    """Initial conditions at ``time`` (s). Raises AssemblyError where the links cannot be closed."""
+    """Return initial conditions at ``time`` (s). Raises AssemblyError where the links cannot be closed."""
     initial, joined = closed_ideally(m, packed, lambda own, whole: _consistent(own, whole, time))
     if joined:
         initial = _driven(m, packed, drive_at(packed, time), initial)
@@ -60,7 +60,7 @@ def consistent(m: Model, packed: Packed, time: float) -> Initial:
 
 
 def drive_at(packed: Packed, time: float) -> np.ndarray:
-    """(motions + 1, 3) what drivers impose at ``time`` (s)."""
+    """Return (motions + 1, 3) what drivers impose at ``time`` (s)."""
     return packed.drives(np.array([time]))[0]
 
 
@@ -78,7 +78,7 @@ def _driven(m: Model, packed: Packed, drive: np.ndarray, initial: Initial) -> In
 
 
 def _consistent(m: Model, packed: Packed, time: float) -> Initial:
-    """The same of a mechanism whose joints are all there."""
+    """Return initial conditions of a mechanism whose joints all hold."""
     drive = packed.drives(np.array([time]))[0]
 
     def started() -> tuple[Initial, np.ndarray]:
@@ -108,7 +108,7 @@ def start_pose(m: Model, packed: Packed, time: float, drive: np.ndarray) -> tupl
 
 
 def _start_pose(m: Model, packed: Packed, time: float, drive: np.ndarray) -> tuple[np.ndarray, list[str]]:
-    """The same of a mechanism whose joints are all there."""
+    """Return the closed pose and sentences for a mechanism whose joints all hold."""
     q = assemble(m, packed, time)
     if not m.starts:
         return q, []
@@ -122,7 +122,7 @@ def _start_pose(m: Model, packed: Packed, time: float, drive: np.ndarray) -> tup
 
 
 def tell_coordinates(packed: Packed, q: np.ndarray, given: list[tuple[int, float]]) -> list[str]:
-    """A sentence for each given (coordinate, value) that the pose q (3 nb,) does not hold."""
+    """Return a sentence for each given (coordinate, value) that the pose q (3 nb,) does not hold."""
     size = np.concatenate([np.ones(3), packed.column_scale()])
     deviations = []
     for c, target in given:

@@ -16,8 +16,8 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import MobilityError, SingularPoseError
-from mbsd.base.kept import Kept
 from mbsd.base.quantity import counted
+from mbsd.base.running import Kept
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.close import CLOSED, close, rough_pose
 from mbsd.kinematics.pose.held_values import RANK_TOLERANCE, SMALL, independent_rows
@@ -36,13 +36,13 @@ _CHOSEN: Kept[tuple[int, ...]] = Kept()
 
 
 def joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:
-    """Mobility of the joints alone at the closed pose q (3 nb,)."""
+    """Return mobility of the joints alone at the closed pose q (3 nb,)."""
     key = _key(packed, q)
     return _joint_mobility(packed, q) if key is None else _MOBILITY.get(key, lambda: _joint_mobility(packed, q))
 
 
 def rows_at(packed: Packed, q: np.ndarray) -> list[int]:
-    """Rows of J at q (3 nb,) that are independent of those before them."""
+    """Return rows of J at q (3 nb,) that are independent of those before them."""
 
     def independent() -> tuple[int, ...]:
         return tuple(independent_rows(scaled_jacobian(packed, q)))
@@ -60,7 +60,7 @@ def _key(packed: Packed, q: np.ndarray) -> tuple[object, ...] | None:
 
 
 def _joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:
-    """The same, found anew."""
+    """Return the groups of a mechanism without a look at those kept; None without such a plan."""
     rows = packed.driver_rows
     here = scaled_jacobian(packed, q)[:rows]
     best, start = here, len(independent_rows(here))
@@ -98,7 +98,7 @@ def _free_bodies(packed: Packed, jac: np.ndarray, q: np.ndarray) -> tuple[str, .
 
 
 def _fastened(packed: Packed) -> set[int]:
-    """Ground and the bodies that joints of three rows hold on it, one after the other: they never move."""
+    """Return ground and the bodies that joints of three rows hold on it: they never move."""
     joints = packed.joints[: int(np.searchsorted(packed.first_row, packed.driver_rows))]
     ends = packed.system.marker_body[packed.markers[: len(joints)]]
     pairs = [tuple(pair) for pair, rows in zip(ends.tolist(), np.diff(packed.first_row), strict=False) if rows == 3]
@@ -110,7 +110,7 @@ def _fastened(packed: Packed) -> set[int]:
 
 
 def refuse_overdriven(m: Model, packed: Packed, time: float) -> None:
-    """If the joints close without the drivers, see whether these are too many; raises MobilityError if so."""
+    """Raise MobilityError if the joints close without the drivers, and these are too many."""
     none = np.zeros((len(packed.motions) + 1, 3))
     let_phases_go(packed)
     q, worst = close(packed, rough_pose(m, packed, none, 0), none, packed.driver_rows)
@@ -178,7 +178,7 @@ def better_rows(jac: np.ndarray, known: Sequence[int] | np.ndarray, better: floa
 
 
 def _best_rows(packed: Packed, q: np.ndarray) -> tuple[list[int], list[int], np.ndarray]:
-    """Independent rows at q, at the pose near it (or q) that has most of them, and that pose."""
+    """Return independent rows at q, at the pose near it (or q) that has most of them, and that pose."""
     here = independent_rows(scaled_jacobian(packed, q))
     if len(here) == min(packed.coordinates, len(packed.ws.phi)):
         return here, here, q
@@ -203,13 +203,13 @@ def _refuse_idle_drivers(packed: Packed, joints: Mobility, kept: list[int], time
 
 
 def scaled_jacobian(packed: Packed, q: np.ndarray) -> np.ndarray:
-    """(m, n) dimensionless Jacobian at q, ground's columns left out."""
+    """Return (m, n) dimensionless Jacobian at q, ground's columns left out."""
     residual_and_jacobian(packed.system, q, np.zeros((len(packed.motions) + 1, 3)), packed.ws)
     return packed.jacobian() * packed.row_scale()[:, None] * packed.column_scale()
 
 
 def _nearby(packed: Packed, q: np.ndarray, tries: int = 3, seed: int = 1) -> list[np.ndarray]:
-    """Closed poses near q, with the drivers released."""
+    """Return closed poses near q, with the drivers released."""
     random = np.random.default_rng(seed)
     scale = packed.column_scale()
     none = np.zeros((len(packed.motions) + 1, 3))
@@ -224,7 +224,7 @@ def _nearby(packed: Packed, q: np.ndarray, tries: int = 3, seed: int = 1) -> lis
 
 
 def _moving(packed: Packed, jac: np.ndarray) -> tuple[str, ...]:
-    """Bodies that the null space of J moves."""
+    """Return bodies that the null space of J moves."""
     size = _kept_motion(jac.tobytes(), jac.shape) if jac.size <= SMALL else _motion(jac)
     return tuple(name for name, moved in zip(packed.body_names[1:], size, strict=True) if moved > 1e-6)
 
@@ -235,7 +235,7 @@ def _kept_motion(numbers: bytes, shape: tuple[int, int]) -> np.ndarray:
 
 
 def _motion(jac: np.ndarray) -> np.ndarray:
-    """(bodies,) largest number of each body in unit vectors that span the null space of J."""
+    """Return (bodies,) largest number of each body in unit vectors that span the null space of J."""
     _, singular, v = np.linalg.svd(jac, full_matrices=True)
     rank = int((singular > RANK_TOLERANCE * max(1.0, singular.max(initial=0.0))).sum())
     null = v[rank:]
@@ -243,7 +243,7 @@ def _motion(jac: np.ndarray) -> np.ndarray:
 
 
 def _of_play(packed: Packed) -> str:
-    """A sentence where forces take the place of joints."""
+    """Return a sentence where forces take the place of joints."""
     names = [f"'{force.name}'" for force in packed.forces if force.kind.ideal is not None]
     if not names:
         return ""

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mbsd.base.errors import AssemblyError
-from mbsd.equations.constraints.relative import ACTIVE, ARM, AT, MARKER_I, MARKER_J, ROW
+from mbsd.equations.relative.equation import ACTIVE, ARM, AT, MARKER_I, MARKER_J, ROW
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
@@ -31,7 +31,7 @@ def let_phases_go(packed: Packed) -> None:
 
 
 def active_rows(packed: Packed) -> set[int]:
-    """All rows but those that are left out."""
+    """Return all rows but those that are left out."""
     special = packed.system.special
     return set(range(len(packed.ws.phi))) - {int(row) for row in special[special[:, ACTIVE] == 0, ROW]}
 
@@ -133,7 +133,7 @@ def _arm_of(packed: Packed, q: np.ndarray, pins: _Pins, i: int, j: int) -> int |
 
 
 def _turned_to(packed: Packed, q: np.ndarray, markers: tuple[int, int], angles: tuple[float, float]) -> np.ndarray:
-    """The pose with both bodies turned about their markers to the given angles (rad)."""
+    """Return the pose with both bodies turned about their markers to the given angles (rad)."""
     out = q.copy()
     for marker, angle in zip(markers, angles, strict=True):
         body = int(packed.system.marker_body[marker])

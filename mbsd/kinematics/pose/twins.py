@@ -38,7 +38,7 @@ class Twin:
 
 
 def twin(m: Model) -> Twin | None:
-    """The start pose's twin at time 0, if it has one; None also where nothing closes."""
+    """Return the start pose's twin at time 0, if it has one; None also where nothing closes."""
     if not 2 <= len(m.bodies) <= MOST_BODIES or any(not joint.kind.saved for joint in m.joints.values()):
         return None
     try:
@@ -70,7 +70,7 @@ def twin(m: Model) -> Twin | None:
 
 
 def _alike(m: Model, packed: Packed, apart: np.ndarray) -> list[int]:
-    """Bodies with a rotational symmetry (:attr:`JointKind.symmetry`), turned by whole steps of it."""
+    """Return bodies with a rotational symmetry (:attr:`JointKind.symmetry`), turned by whole steps of it."""
     out = []
     for joint in m.joints.values():
         if joint.kind.symmetry is not None:
@@ -82,7 +82,7 @@ def _alike(m: Model, packed: Packed, apart: np.ndarray) -> list[int]:
 
 
 def _turns(q: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """(nb,) angles from one pose to another, within half a turn."""
+    """Return (nb,) angles from one pose to another, within half a turn."""
     gap = q[2::3] - other[2::3]
     return gap - 2 * math.pi * np.round(gap / (2 * math.pi))
 

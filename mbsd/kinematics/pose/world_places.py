@@ -42,7 +42,7 @@ def marker_in_world(m: Model, body: Body, x: float, y: float, angle: float) -> M
 
 
 def moved_markers(m: Model) -> Iterator[tuple[Marker, tuple[float, float, float], tuple[float, float]]]:
-    """Markers of at_world that start elsewhere: where each was put (m, m, rad), and where it starts (m)."""
+    """Yield markers of at_world that start elsewhere: their given place (m, m, rad) and their start (m)."""
     joined = [joint for part in (m.joints, m.drivers, m.forces, m.contacts) for joint in part.values()]
     used = {id(marker) for joint in joined for marker in (joint.i, joint.j)} | {
         id(marker) for marker in m.traces.values()
@@ -68,8 +68,8 @@ def moved_markers(m: Model) -> Iterator[tuple[Marker, tuple[float, float, float]
 
 
 def _around(m: Model, body: Body) -> Model:
-    """The part of a mechanism that joints and drivers connect with a body other than by ground."""
-    from mbsd.arrays.start_state import copied
+    """Return the part of a mechanism that joints and drivers connect with a body other than by ground."""
+    from mbsd.arrays.starts import copied
 
     links = [(joint.i.body.name, joint.j.body.name) for joint in (*m.joints.values(), *m.drivers.values())]
     near: dict[str, set[str]] = {}
@@ -94,7 +94,7 @@ def _around(m: Model, body: Body) -> Model:
 
 
 def _start(m: Model, packed: Packed) -> np.ndarray:
-    """(3 nb,) the closed pose at time 0, with what start_near gives held where the joints leave it."""
+    """Return (3 nb,) the closed pose at time 0, with what start_near gives held where the joints leave it."""
     from mbsd.equations.assembly import residual_and_jacobian
     from mbsd.kinematics.pose.close import CLOSED, rough_pose, unwind_angles
     from mbsd.kinematics.pose.ideal_joints import with_ideal_joints
@@ -116,7 +116,7 @@ def _start(m: Model, packed: Packed) -> np.ndarray:
 
 
 def _frames(packed: Packed, q: np.ndarray) -> np.ndarray:
-    """(nb, 3) place (m) and angle (rad) of the bodies' own frames in pose q (3 nb,)."""
+    """Return (nb, 3) place (m) and angle (rad) of the bodies' own frames in pose q (3 nb,)."""
     out = q.reshape(-1, 3).copy()
     c, s = np.cos(out[:, 2]), np.sin(out[:, 2])
     x, y = packed.com.T
@@ -126,7 +126,7 @@ def _frames(packed: Packed, q: np.ndarray) -> np.ndarray:
 
 
 def _inside(body: Body, frame: np.ndarray, x: float, y: float, angle: float) -> Marker:
-    """The marker at (x, y, angle) of the world on a body whose frame stands there."""
+    """Return the marker at (x, y, angle) of the world on a body whose frame stands there."""
     c, s = math.cos(frame[2]), math.sin(frame[2])
     dx, dy = x - frame[0], y - frame[1]
     return Marker(body, float(c * dx + s * dy), float(c * dy - s * dx), float(angle - frame[2]))

@@ -12,9 +12,8 @@ import numpy as np
 
 from mbsd.dynamics.measures.kinds import Measure
 from mbsd.kinematics.batch import parameters
-from mbsd.kinematics.design_sweeps import Batch, DesignSweeps, Moved, Push, in_closed_form
-from mbsd.kinematics.doubted_designs import FINER, settle
-from mbsd.kinematics.prepare import prepare
+from mbsd.kinematics.design_sweeps import FINER, Batch, DesignSweeps, Moved, Push, in_closed_form, settle
+from mbsd.kinematics.prepared import prepare
 from mbsd.model.body import at_end
 from mbsd.model.mechanism import Model
 from mbsd.numbers.names import place_in, placed_side

@@ -95,7 +95,7 @@ class OneByOne:
 
 def swept(m: Model, columns: Sequence[Column], result: Measure | Callable[[Any], Any], grid: np.ndarray) -> OneByOne:
     """Machines swept one by one over times ``grid`` (T,); they share the plan of ``m``."""
-    from mbsd.kinematics.prepare import prepare
+    from mbsd.kinematics.prepared import prepare
     from mbsd.kinematics.sweep import sweep
 
     of_solution = OfSolution(m, result)

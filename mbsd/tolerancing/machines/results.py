@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.base.arguments import described
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import shown
-from mbsd.base.users_function import described
 from mbsd.dynamics.measures.kinds import Measure
 from mbsd.dynamics.measures.quantities import Quantity, quantity_named
 from mbsd.model.mechanism import Model

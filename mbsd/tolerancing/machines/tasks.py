@@ -55,7 +55,7 @@ def task_of(m: Any, sizes: Any, result: Any, duration: float | None, steps: int,
 def _driven(
     m: Any, dimensions: list[Dimension], result: Any, duration: float | None, steps: int, way: str, threads: int | None
 ) -> Task:
-    from mbsd.kinematics.prepare import prepare
+    from mbsd.kinematics.prepared import prepare
     from mbsd.kinematics.sweep import sweep, sweep_times
 
     grid = sweep_times(m, duration, steps, None)

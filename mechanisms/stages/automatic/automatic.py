@@ -32,10 +32,9 @@ from mechanisms.stages.automatic.shafts.bodies import has_places
 from mechanisms.stages.automatic.standing import hold
 from mechanisms.stages.loading.wishes import wished, wished_scale
 from shared.contract.materials import MATERIALS
-from shared.contract.mount import Mount, mounted
+from shared.contract.parts import Mount, mounted
 from shared.stage.console import Shown
-from shared.stage.errors import UserError
-from shared.stage.suggestions import did_you_mean
+from shared.stage.errors import UserError, did_you_mean
 
 if TYPE_CHECKING:
     import cadquery as cq
@@ -44,9 +43,9 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.body_shapes import Joined
     from mechanisms.stages.automatic.layout.plan import Plan
     from shared.shapes.bodies import Bodies
-    from shared.shapes.fit import Fit
     from shared.shapes.outline import Point
     from shared.shapes.solid import Solid
+    from shared.shapes.standards import Fit
 
 
 # Names in wishes for parts: bodies and materials that there are.

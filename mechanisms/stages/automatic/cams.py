@@ -19,8 +19,7 @@ from mechanisms.stages.automatic.pins.free_bodies import Face
 from mechanisms.stages.automatic.slides.slots import Slot, passed, slot_pin
 from shared.shapes import outline
 from shared.shapes.build import bore, eased, extruded
-from shared.shapes.cam import cam_disc, evenly
-from shared.shapes.geneva import Geneva
+from shared.shapes.cams import Geneva, cam_disc, evenly
 from shared.shapes.outline import circle
 from shared.shapes.solid import placed
 from shared.stage.errors import UserError

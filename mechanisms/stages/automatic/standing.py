@@ -15,8 +15,8 @@ from mechanisms.stages.automatic.layout.planar import convex_hull
 from shared.contract.materials import MATERIALS
 from shared.shapes.build import extruded
 from shared.shapes.facets import facets
+from shared.shapes.kernel import rough_size
 from shared.shapes.outline import circle
-from shared.shapes.rough_box import rough_size
 from shared.shapes.solid import Solid, placed
 from shared.shapes.stand import Bolt, bolt, column, drilled, foot, screwed, seated
 

@@ -13,8 +13,7 @@ from mechanisms.stages.clearance.path import BodyPath, RelativePath
 from mechanisms.stages.clearance.pieces import FacetTree, MeshPiece, extent, height_between, order, turned_union
 from mechanisms.stages.clearance.search import RESOLUTION, Least, Search, Sweep
 from shared.contract import Held, JointMotion, Motion, Parts
-from shared.contract.belt_path import BeltPath
-from shared.contract.belt_section import half_height, half_width
+from shared.contract.geometry import BeltPath, half_height, half_width
 from shared.shapes.units import mm
 
 # How near the relative motion of two bodies is to ideal rolling: a circle of centres, turning in a fixed ratio.
@@ -220,7 +219,7 @@ def _one_pitch(ideal: Rolling, gears: Gears, pitch: float, off: float) -> Relati
 #
 # A belt lies still against the line of its pulleys' centres, whatever runs round in it. So its band (mm) is a piece of
 # a body of its own: the origin is the first pulley's centre, the x axis goes to the second's. It is as wide and high as
-# all that the film draws of the belt (shared/contract/belt_section.py), strands that cross included.
+# all that the film draws of the belt (shared/contract/geometry.py), strands that cross included.
 
 SAG = 0.02
 """At most so far (mm) the straight sides of the band's outline leave the arcs; it is wider by as much."""

@@ -12,7 +12,7 @@ import msgspec
 import numpy as np
 
 from shared.contract import Motion, Parts
-from shared.shapes.fit import Fit
+from shared.shapes.standards import Fit
 from shared.shapes.units import mm
 
 if TYPE_CHECKING:

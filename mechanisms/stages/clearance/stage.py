@@ -57,7 +57,7 @@ LOOKS = 4
 PACKAGES = ("manifold3d", "numpy")
 SOURCES = [
     *(ROOT / "mechanisms" / "stages" / name for name in ("clearance", "parts_files.py")),
-    *contract_sources("belt_path", "belt_section", "clearance", "spanning"),
+    *contract_sources("clearance", "geometry"),
 ]
 
 
@@ -121,7 +121,7 @@ def check(
     from mechanisms.stages.clearance.path import axes_of, paths
     from mechanisms.stages.clearance.search import RESOLUTION, Sweep
     from mechanisms.stages.clearance.slide import slides_of
-    from shared.contract.spanning import with_rods
+    from shared.contract.geometry import with_rods
 
     name, motion = title or parts.mechanism, with_rods(motion, parts)
     _refuse_lost(name, pieces, motion)

@@ -13,8 +13,8 @@ import numpy as np
 from mechanisms.stages.solve.motion_file import to_motion
 from mechanisms.stages.solve.skeleton_file import main_material
 from shared.contract import BodyParts, Motion, Parts
+from shared.contract.geometry import with_rods
 from shared.contract.materials import MATERIALS
-from shared.contract.spanning import with_rods
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
 from shared.stage.paths import Out

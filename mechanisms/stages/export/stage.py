@@ -16,11 +16,10 @@ from mechanisms.stages.loading.inputs import Inputs, observed, recording
 from mechanisms.stages.solve import stage as solving
 from shared import contract
 from shared.stage.console import say, warn
-from shared.stage.errors import UserError
+from shared.stage.errors import UserError, did_you_mean
 from shared.stage.files import sources_hash, write_bytes
 from shared.stage.paths import ROOT, Out, known_name, mechanism_file
 from shared.stage.stages import Stage, key_of
-from shared.stage.suggestions import did_you_mean
 
 SOURCES = [ROOT / "mechanisms" / "stages" / name for name in ("export", "dxf_file.py")]
 Written = tuple[bytes, list[str]]
@@ -88,7 +87,7 @@ def _warn_of_time(name: str, time: float, first: float, last: float) -> None:
 
 
 def _csv(wanted: Wanted) -> Written:
-    from mbsd.base.csv_text import frame_csv
+    from mbsd.base.files import frame_csv
 
     return frame_csv(wanted.solution.to_frame()).encode(), []
 

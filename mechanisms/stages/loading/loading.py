@@ -26,7 +26,7 @@ from types import CodeType, FrameType, ModuleType
 from typing import Any, Literal
 
 from mechanisms.stages.loading.inputs import is_installed
-from shared.stage.errors import UserError
+from shared.stage.errors import UserError, did_you_mean
 from shared.stage.paths import (
     MECHANISMS,
     NAME,
@@ -43,7 +43,6 @@ from shared.stage.paths import (
     variant_of,
     variants_in,
 )
-from shared.stage.suggestions import did_you_mean
 
 # Says in a sentence what the author's code raised: the file, the author's own line, the error, a remedy if known.
 

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 
 from mechanisms.stages.loading.loading import has, load
-from shared.contract.mount import Kind
+from shared.contract.parts import Kind
 from shared.contract.shot import Shot, refuse_unsound
 from shared.stage.paths import shown_file
 from shared.stage.scale import Scale

@@ -9,7 +9,7 @@ import tempfile
 from pathlib import Path
 
 from shared.stage.console import say
-from shared.stage.errors import UserError
+from shared.stage.errors import UserError, did_you_mean
 from shared.stage.face import to_run
 from shared.stage.files import write_bytes
 from shared.stage.paths import (
@@ -22,7 +22,6 @@ from shared.stage.paths import (
     mechanism_names,
     shown_file,
 )
-from shared.stage.suggestions import did_you_mean
 
 TEMPLATES = Path(__file__).parent / "templates"
 KINDS = {

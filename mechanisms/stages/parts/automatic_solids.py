@@ -19,7 +19,7 @@ from shared.stage.paths import Out
 if TYPE_CHECKING:
     from mbsd import Mechanism
     from shared.contract import Mass
-    from shared.contract.mount import Kind
+    from shared.contract.parts import Kind
     from shared.shapes.solid import Solid
 
 

@@ -11,8 +11,7 @@ from shared.contract.materials import MATERIALS
 from shared.shapes.bodies import Bodies
 from shared.shapes.solid import Solid
 from shared.shapes.units import metres
-from shared.stage.errors import UserError
-from shared.stage.suggestions import did_you_mean
+from shared.stage.errors import UserError, did_you_mean
 
 if TYPE_CHECKING:
     from collections.abc import Callable

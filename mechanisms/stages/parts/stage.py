@@ -28,7 +28,7 @@ from shared import contract
 from shared.cluster.address import address
 from shared.contract import Parts, Provenance, write_parts
 from shared.contract.materials import MATERIALS
-from shared.contract.mount import Kind
+from shared.contract.parts import Kind
 from shared.contract.quantity import counted, written
 from shared.stage import console
 from shared.stage.console import Shown, say, warn

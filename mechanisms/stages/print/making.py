@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbsd.base.csv_text import csv_text
+from mbsd.base.files import csv_text
 from mechanisms.stages.print.laying import Laid, Sheet, fitting, groups, laid, sheet_of
 from mechanisms.stages.print.plates import Placed, dxf, file_of, packed, section, stl, three_mf
 from shared.contract.quantity import written

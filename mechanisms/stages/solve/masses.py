@@ -12,8 +12,7 @@ from mechanisms.stages.solve import solving
 from shared.contract.materials import MATERIALS
 from shared.contract.quantity import written
 from shared.stage.console import say
-from shared.stage.errors import UserError
-from shared.stage.suggestions import did_you_mean
+from shared.stage.errors import UserError, did_you_mean
 
 if TYPE_CHECKING:
     from mbsd import Marker, Mechanism, Solution

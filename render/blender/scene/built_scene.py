@@ -16,7 +16,7 @@ from render.film.framing import SENSOR
 from render.film.framing import studio as studio_axes
 from render.film.scene import Point, State, StudioSpec
 from render.looks import Light
-from shared.contract.mount import Z
+from shared.contract.parts import Z
 
 # The place where a machine is filmed: ground, background, sky and lights of its look. Sized by what is filmed, turned
 # with the camera.

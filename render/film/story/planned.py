@@ -16,8 +16,7 @@ from render.film.story.story import Story, curves_of
 from render.film.story.words import words_in
 from render.presets import Preset
 from shared.contract.shot import STORY_SHOTS
-from shared.stage.errors import UserError
-from shared.stage.suggestions import did_you_mean
+from shared.stage.errors import UserError, did_you_mean
 
 BUDGET = 2.2
 """Pictures of a story beside those of the loop film; starting Blender twice takes the rest up to 2.5."""

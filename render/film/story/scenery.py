@@ -21,7 +21,7 @@ from render.film.story import frame
 from render.film.story.frame import Over, Picture, Reason
 from render.film.story.story import Curve
 from render.film.story.words import rate_words
-from shared.contract.mount import Vector
+from shared.contract.parts import Vector
 from shared.contract.shot import Story as Wishes
 
 # Stands of a story's cameras, and the eased paths between them.

@@ -7,8 +7,7 @@ from collections.abc import Callable, Sequence
 
 from render.film.story.frame import Caption
 from shared.contract.quantity import figures
-from shared.stage.errors import UserError
-from shared.stage.suggestions import did_you_mean
+from shared.stage.errors import UserError, did_you_mean
 
 # Words of a story, in the language that its shot asks for: a table, so that another language is another column.
 

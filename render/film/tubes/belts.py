@@ -1,7 +1,7 @@
 """Belts and chains that run: a round belt with marks, a chain of rollers between plates. As tubes.
 
 The belt moves with the first pulley: what lies on it at the body's angle gamma is r (gamma + theta - phi - beta) along
-the path of shared/contract/belt_path.py (phi is the direction of the line of centres). Marks and rollers are evenly
+the path of shared/contract/geometry.py (phi is the direction of the line of centres). Marks and rollers are evenly
 spread over the belt. Where the motion has a period, the way of the belt in it is rounded to a whole number of their
 distances, so that the film loops without a jump; of a chain whose length is a whole number of its pitch nothing is
 rounded. Its inner and outer plates take turns, unless it has an odd number of links or moves on by one in a period.
@@ -21,8 +21,7 @@ from render.film.poses import Moment, Poses
 from render.film.scene import Point, SurfaceSpec, TubeSpec
 from render.film.tubes.stretched import BLACK, STEEL, placed
 from shared.contract import Held, Motion, Shape
-from shared.contract.belt_path import BeltPath
-from shared.contract.belt_section import APART, BOLT, LONG, PIN, PLATE, PLATES, PROUD, ROLLER
+from shared.contract.geometry import APART, BOLT, LONG, PIN, PLATE, PLATES, PROUD, ROLLER, BeltPath
 
 Array = NDArray[np.float64]
 BELT = SurfaceSpec(colour=(0.045, 0.045, 0.05), finish="rubber", roughness=0.55)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from render.presets import Preset
-from shared.stage.errors import UserError
-from shared.stage.suggestions import did_you_mean
+from shared.stage.errors import UserError, did_you_mean
 
 KINDS = ("loop", "explain", "compare")
 SHORTEST, LONGEST = 4.0, 60.0

@@ -28,9 +28,9 @@ from render.report import description
 from render.report.facts import facts, reasons
 from render.report.transmission import marks
 from shared.contract import Motion, read_motion, read_parts
+from shared.contract.geometry import with_rods
 from shared.contract.shot import Shot, read_shot, shown
 from shared.contract.shot import Story as Wishes
-from shared.contract.spanning import with_rods
 from shared.stage.console import duration
 from shared.stage.errors import UserError
 from shared.stage.paths import Out

@@ -3,25 +3,147 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from mbsd import Mechanism, Solution
+import numpy as np
+
+from mbsd import AssemblyError, BranchError, LimitError, Mechanism, MechanismError, SingularPoseError, Solution
+from mbsd.drawing.moving_skeleton import Moving, moving, redrawn
 from mechanisms.stages.loading import loading
 from mechanisms.stages.loading.inputs import author_files, path_of, recording
 from mechanisms.stages.solve import solving
 from mechanisms.stages.solve.masses import bodies_of, give_masses
+from mechanisms.stages.solve.motion_file import to_motion
+from mechanisms.stages.solve.skeleton_file import moving_of
 from render.view.document import encode
+from render.view.payload import payload
 from shared import contract
+from shared.contract import Motion, Parts
+from shared.contract.geometry import with_rods
 from shared.contract.shot import Shot
+from shared.contract.skeleton import Moving as Told
 from shared.stage import console
 from shared.stage.errors import UserError
 from shared.stage.paths import Out, mechanism_file, mechanism_folder, shown_file
-from studio.live.child.shown import Shown
-from studio.live.child.stops import Stop, until_it_stops
 from studio.live.numbers import changed
+
+# Solutions as the page shows them: the bytes of its payload.
+
+
+OF_PARTS = ("bodies", "arrows", "arcs", "trails", "clearance", "solid")
+"""Entries of the payload that change once there are parts."""
+
+
+class Shown:
+    """Payloads of one mechanism; ``quick`` ones keep symbol size and extent of the last whole one."""
+
+    def __init__(self) -> None:
+        self._last: Moving | None = None
+        self._motion: tuple[Motion, Told] | None = None
+
+    def payload(
+        self,
+        solution: Solution,
+        parts: Parts | None,
+        sources: Mapping[str, Any],
+        shot: Shot | None,
+        quick: bool,
+        arrows: bool = True,
+    ) -> dict[str, Any]:
+        """Return the payload without its parts.
+
+        Raises UserError for a shot that names something missing.
+        """
+        skeleton = redrawn(solution, self._last) if quick and self._last is not None else None
+        if skeleton is None:
+            skeleton = moving(solution)
+            self._last = skeleton
+        motion = to_motion(solution, parts, "", {}, sources)
+        skeleton_data = moving_of(solution, skeleton)
+        self._motion = motion, skeleton_data
+        return payload(motion, skeleton_data, shot, arrows or not quick)
+
+    def solid(self, parts: Parts, shot: Shot | None, folder: Path) -> bytes:
+        """Return the bytes of the last motion's payload that show its parts. Raises UserError."""
+        from render.film.film import Film
+        from render.view.solid import with_parts
+
+        assert self._motion is not None
+        motion, skeleton_data = self._motion
+        motion = with_rods(motion, parts)
+        whole = with_parts(payload(motion, skeleton_data, shot), Film(motion, parts, shot or Shot(), folder))
+        return encode({key: whole[key] for key in OF_PARTS}, compress=False)
+
+
+# The stop of a driven motion: the last moment at which the links close, with the motion up to there.
+
+
+STEPS = 360
+FEWEST = 3
+"""Moments of a motion that can be shown."""
+FINER = 20
+"""Halvings after the grid: the angle is known to a millionth of a step."""
+OPENS = (AssemblyError, BranchError, LimitError, SingularPoseError)
+
+
+@dataclass(frozen=True)
+class Stop:
+    """Place and reason of a stop."""
+
+    time: float
+    """s"""
+    drivers: dict[str, float]
+    """Their values there: rad, or m."""
+    text: str
+    """Message of the solver."""
+
+
+def until_it_stops(name: str, module: Any, m: Mechanism, solve: Callable[[], Solution]) -> tuple[Solution, Stop | None]:
+    """Return the solution of ``solve``, or the motion up to the moment when the links open.
+
+    Raises UserError as ``solve`` does where there is no motion at all, or the author solves it himself.
+    """
+    try:
+        return solve(), None
+    except UserError as error:
+        if not isinstance(error.__cause__, OPENS) or hasattr(module, "motion") or not m.drivers:
+            raise
+        longest = _longest(m, loading.constant(name, module, "DURATION"))
+        if longest is None:
+            raise
+        values = {driver: float(longest.driver(driver).value[-1]) for driver in m.drivers}
+        return longest, Stop(float(longest.t[-1]), values, str(error))
+
+
+def _longest(m: Mechanism, duration: Any) -> Solution | None:
+    from mbsd.kinematics.sweep import sweep_times
+
+    try:
+        grid = sweep_times(m, duration, STEPS, None)
+    except MechanismError:
+        return None
+
+    def swept(times: np.ndarray) -> Solution | None:
+        try:
+            return m.sweep(times=times)
+        except MechanismError:
+            return None
+
+    good, bad = 0, len(grid) - 1
+    while bad - good > 1:
+        middle = (good + bad) // 2
+        good, bad = (middle, bad) if swept(grid[: middle + 1]) else (good, middle)
+    if good < FEWEST - 1:
+        return None
+    last, beyond = float(grid[good]), float(grid[bad])
+    for _ in range(FINER):
+        middle = (last + beyond) / 2
+        last, beyond = (middle, beyond) if swept(np.append(grid[: good + 1], middle)) else (last, middle)
+    times = np.append(grid[: good + 1], last) if last > grid[good] else grid[: good + 1]
+    return swept(times)
 
 
 @dataclass

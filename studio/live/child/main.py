@@ -1,4 +1,4 @@
-"""Loop of the child: it reads requests from a pipe and answers with frames (studio/live/frames.py).
+"""Loop of the child: it reads requests from a pipe and answers with frames (studio/live/messages.py).
 
     {"do": "open"}                                 -> motion, with numbers and files
     {"do": "set", "values": {...}}                 -> motion
@@ -14,22 +14,93 @@ Every answer has the request's "id". What cannot be done is {"kind": "error", "t
 
 from __future__ import annotations
 
+import io
+import os
+import sys
 import threading
 import traceback
-from collections.abc import Callable
-from contextlib import suppress
-from typing import Any
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, redirect_stderr, redirect_stdout, suppress
+from typing import Any, TextIO
 
+from mechanisms.stages.loading import loading
 from shared.stage.errors import UserError
-from studio.live.child import spoken
+from shared.stage.paths import mechanism_file
 from studio.live.child.author import Answer, Author
-from studio.live.child.candidate import numbers_with
 from studio.live.child.described import described
-from studio.live.child.dragging import dragged
-from studio.live.child.fitting import fitted
-from studio.live.frames import framed, unframed
+from studio.live.child.dragging import dragged, fitted
+from studio.live.messages import framed, unframed
 from studio.live.numbers import numbers_of
-from studio.live.processes.pipe import Pipe
+from studio.live.processes.pipe import Lines, Pipe
+
+# Numbers that a mechanism.py would have with another source: a change in it may have no effect.
+
+
+def numbers_with(name: str, source: bytes) -> list[dict[str, Any]]:
+    """Return the numbers of Params with ``source`` in place of the file's.
+
+    This process is of no other use afterwards.
+
+    Raises UserError where it cannot be loaded.
+    """
+    loading.INSTEAD[os.path.realpath(mechanism_file(name))] = source
+    return [vars(number) for number in numbers_of(loading.params(name))]
+
+
+# Output of the author's code, sent to the terminal and, line by line, to the page.
+
+
+MOST = 200
+"""Lines of one run that the page gets."""
+
+
+class Spoken(io.TextIOBase):
+    """Stream that passes on all text and reports each whole line; long lines are cut."""
+
+    def __init__(self, through: TextIO | None, tell: Callable[[str], None]) -> None:
+        self._through, self._tell = through, tell
+        self._lines, self._count = Lines(), 0
+
+    def writable(self) -> bool:
+        """Return True."""
+        return True
+
+    def write(self, text: str, /) -> int:
+        """Pass the text on, and report the lines that it ends."""
+        if self._through is not None:
+            with suppress(OSError, ValueError):
+                self._through.write(text)
+                self._through.flush()
+        for line in self._lines.add(text):
+            self._line(line)
+        return len(text)
+
+    def end(self) -> None:
+        """Report a last line without an end."""
+        self._line(self._lines.rest())
+
+    def _line(self, line: str) -> None:
+        if not line.strip():
+            return
+        self._count += 1
+        if self._count <= MOST:
+            self._tell(line)
+        elif self._count == MOST + 1:
+            self._tell(f"more than {MOST} lines were printed; the terminal has the others")
+
+
+@contextmanager
+def to(tell: Callable[[str], None]) -> Iterator[None]:
+    """Report printed lines to ``tell`` within the block."""
+    out, err = Spoken(sys.stdout, tell), Spoken(sys.stderr, tell)
+    with redirect_stdout(out), redirect_stderr(err):
+        try:
+            yield
+        finally:
+            with suppress(OSError):
+                out.end()
+                err.end()
+
 
 Send = Callable[..., None]
 
@@ -43,7 +114,7 @@ def main(pipe: Pipe, name: str) -> None:
         with sending:
             pipe.send(frame)
 
-    with suppress(EOFError, OSError), spoken.to(lambda text: send({"kind": "line", "text": text})):
+    with suppress(EOFError, OSError), to(lambda text: send({"kind": "line", "text": text})):
         _serve(pipe, name, send)
 
 

@@ -20,8 +20,8 @@ import mechanisms.stages.solve.refinement  # noqa: E402, F401
 from mbsd import Mechanism, constant_rate, fit_path  # noqa: E402
 from mechanisms.stages.solve.masses import give_masses  # noqa: E402
 from render.view.document import encode  # noqa: E402
+from studio.live.child.author import Shown  # noqa: E402
 from studio.live.child.main import main as serve  # noqa: E402, F401  (runs in each process that is forked)
-from studio.live.child.shown import Shown  # noqa: E402
 
 
 def _driven() -> Mechanism:

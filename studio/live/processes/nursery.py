@@ -133,7 +133,7 @@ class Nursery:
         """Start another warm process after one has ended, and inform the pages."""
         if self._ended or warm is not self._warm:
             return
-        self.say(f"the process from which those of mechanism.py are forked {how}; another one takes its place")
+        self.say(f"the process from which those of mechanism.py are forked {how}; it is replaced")
         if (
             self._starting is None and time.monotonic() - self._since > QUICK
         ):  # else when it is needed: it could go on so

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from contextlib import suppress
 
 from shared.stage.paths import ROOT
-from studio.live.processes.lines import Lines
+from studio.live.processes.pipe import Lines
 from studio.live.processes.trees import MARK, end_with_below
 
 COMMAND = [sys.executable, "-m", "mechanisms"]

@@ -87,7 +87,7 @@ def watts_of(words: str) -> float | None:
         watts = math.nan
     if not 0 < watts < math.inf:
         raise UserError(
-            f"{said(watts=words)} is no power; write what this computer takes while it renders, in watts: "
+            f"{said(watts=words)} is not a power; give what this computer draws while it renders, in watts: "
             f"{said(watts='85')}"
         )
     return watts

@@ -1,11 +1,14 @@
-"""Steps of a mechanism, from its files to its film: the needs of each, and its command."""
+"""Steps of a mechanism, from its files to its film, and the board of all: which are done, which may start."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 from studio.night.plan.options import Options
+
+# Steps of a mechanism, from its files to its film: the needs of each, and its command.
 
 
 @dataclass(frozen=True)
@@ -60,3 +63,94 @@ def followers(step: str, steps: Sequence[Step] = STEPS) -> list[str]:
         if after & set(other.needs):
             after.add(other.name)
     return [other.name for other in steps if other.name in after - {step}]
+
+
+# Board of all steps: which are done, and which may start next, without processes or files.
+
+
+State = Literal["waiting", "running", "fresh", "done", "failed", "blocked"]
+"""``fresh``: there was nothing to do; ``blocked``: a step that it needs has failed."""
+OVER: tuple[State, ...] = ("fresh", "done", "failed", "blocked")
+GOOD: tuple[State, ...] = ("fresh", "done")
+
+
+class Board:
+    """States of all steps of all mechanisms."""
+
+    def __init__(
+        self, names: Sequence[str], fresh: Mapping[str, Collection[str]] | None = None, steps: Sequence[Step] = STEPS
+    ) -> None:
+        self.names, self.steps = list(names), {step.name: step for step in steps}
+        self.away: set[str] = set()
+        """Mechanisms that another process has; films of the others do not wait for their probes."""
+        known = fresh or {}
+        self._states: dict[tuple[str, str], State] = {}
+        for name in names:
+            for step in steps:
+                # What follows a step that has something to do may have something to do, too.
+                good = step.name in known.get(name, ()) and all(self._states[name, n] == "fresh" for n in step.needs)
+                self._states[name, step.name] = "fresh" if good else "waiting"
+
+    def state(self, name: str, step: str) -> State:
+        """Return the state of a step."""
+        return self._states[name, step]
+
+    def steps_of(self, name: str) -> dict[str, State]:
+        """Return the steps of one mechanism in order."""
+        return {step: self._states[name, step] for step in self.steps}
+
+    def start(self, name: str, step: str) -> None:
+        """Record that a step runs."""
+        self._states[name, step] = "running"
+
+    def wait(self, name: str, step: str) -> None:
+        """Record that a step that ran has to run once more."""
+        self._states[name, step] = "waiting"
+
+    def finish(self, name: str, step: str) -> None:
+        """Record that a step has ended well."""
+        self._states[name, step] = "done"
+
+    def fail(self, name: str, step: str) -> None:
+        """Record that a step has failed; steps that need it are blocked, running ones go on."""
+        self._states[name, step] = "failed"
+        for other in followers(step, list(self.steps.values())):
+            if self._states[name, other] == "waiting":
+                self._states[name, other] = "blocked"
+
+    def is_over(self) -> bool:
+        """Return True if nothing runs or could run."""
+        return all(state in OVER for state in self._states.values())
+
+    def is_measured(self) -> bool:
+        """Return True if the probe of every film that this run can render now is over."""
+        here = [name for name in self.names if name not in self.away] if PROBE in self.steps else []
+        return all(self._states[name, PROBE] in OVER for name in here)
+
+    def ready(self, renders: bool) -> Iterator[tuple[str, str]]:
+        """Yield mechanism and step that may start now, the most urgent first.
+
+        ``renders`` selects renders, or steps beside the render.
+
+        Every probe comes before the first film, so that the forecast stands when the night begins.
+        """
+        waiting_steps = [
+            (step.rank, place, name, step.name)
+            for place, name in enumerate(self.names)
+            for step in self.steps.values()
+            if step.renders == renders
+            and self._states[name, step.name] == "waiting"
+            and all(self._states[name, need] in GOOD for need in step.needs)
+            and (step.name != FILM or self.is_measured())
+        ]
+        for _, _, name, step in sorted(waiting_steps):
+            yield name, step
+
+    def outcome(self, name: str) -> Literal["waiting", "at work", "done", "failed"]:
+        """Return the state of a whole mechanism."""
+        states = set(self.steps_of(name).values())
+        if states <= set(GOOD):
+            return "done"
+        if states <= set(OVER):
+            return "failed"
+        return "at work" if "running" in states else "waiting"

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,11 +13,129 @@ import numpy as np
 from render.view.document import encode
 from studio.live.child.author import Author
 from studio.live.child.described import described
-from studio.live.numbers import numbers_of
-from studio.site.designs import chebyshev
-from studio.site.designs.choosing import Axis, axes_of
-from studio.site.designs.leaves import form
-from studio.site.designs.solved import Solved
+from studio.live.numbers import Number, numbers_of
+from studio.site.designs.vectors import Solved, form
+
+# Interpolation on a tensor grid of Chebyshev points.
+#
+# With nodes x_j = cos(pi j / n), j = 0..n, of each axis, the barycentric form
+#
+#     w_j = (-1)^j, halved at both ends;    p(x) = sum_j [w_j / (x - x_j)] f_j / sum_j [w_j / (x - x_j)]
+#
+# is the polynomial of degree n through all f_j; its error falls geometrically with n where f is smooth (Berrut and
+# Trefethen, SIAM Review 46, 2004, eq. 4.2 and 5.4). The page has the same lines (page/src/designs/chebyshev.js).
+
+
+def nodes(low: float, high: float, count: int) -> np.ndarray:
+    """Return the points between two ends, (count,), rising. ``count`` is at least 2."""
+    cosines = np.cos(np.pi * np.arange(count - 1, -1, -1) / (count - 1))
+    points = 0.5 * (low + high) + 0.5 * (high - low) * cosines
+    points[[0, -1]] = low, high
+    return points
+
+
+def weights(x: float, points: np.ndarray) -> np.ndarray:
+    """Return the weight of each node at ``x``, (count,); their sum is 1."""
+    away = x - points
+    if (hit := np.flatnonzero(away == 0)).size:
+        return np.eye(len(points))[hit[0]]
+    signs = (-1.0) ** np.arange(len(points))
+    signs[[0, -1]] *= 0.5
+    raw = signs / away
+    return raw / raw.sum()
+
+
+def tensor_weights(place: Sequence[float], axes: Sequence[np.ndarray]) -> np.ndarray:
+    """Return the weight of each design of the grid, (product of counts,), the last axis fastest."""
+    out = np.ones(1)
+    for x, points in zip(place, axes, strict=True):
+        out = np.multiply.outer(out, weights(x, points)).ravel()
+    return out
+
+
+def grid(axes: Sequence[np.ndarray]) -> list[tuple[float, ...]]:
+    """Return all designs, the last axis running fastest."""
+    return [tuple(map(float, place)) for place in itertools.product(*axes)]
+
+
+# Numbers of Params that a page offers, and the ends between which they move.
+
+
+WIDEST = 0.6, 1.5
+"""Multiples of a number's value: a page offers no more than this."""
+NARROWER = 0.7
+TRIES = 7
+NUDGE = 0.02
+"""Part of its range by which a number is moved to see what it does."""
+FELT = 1e-3
+"""Parts of the machine's size or of its largest effort: what moves less is no main number."""
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Number of Params between two ends."""
+
+    number: Number
+    low: float
+    high: float
+
+    @property
+    def name(self) -> str:
+        """Name in Params."""
+        return self.number.name
+
+    def narrower(self) -> Axis:
+        """Return an axis whose ends are nearer to the number's own value."""
+        value = self.number.value
+        return replace(self, low=value + NARROWER * (self.low - value), high=value + NARROWER * (self.high - value))
+
+
+def axes_of(solved: Solved, numbers: list[Number], most: int) -> list[Axis]:
+    """Return at most ``most`` main numbers.
+
+    First come those that move the mechanism most, then those that change its efforts most.
+    """
+    felt: list[tuple[float, float, Axis]] = []
+    for number in numbers:
+        axis = _widest(number)
+        if axis is None or solved.is_late:
+            continue
+        moved = solved.numbers_at({number.name: number.value + NUDGE * (number.high - number.low)})
+        if moved is None:
+            continue
+        places, efforts = solved.away(moved, solved.usual)
+        if max(places, efforts) > FELT:
+            felt.append((places if places > FELT else 0.0, efforts, axis))
+    felt.sort(key=lambda each: each[:2], reverse=True)
+    fitting = (_that_solves(solved, axis) for _, _, axis in felt)
+    out = []
+    for axis in fitting:
+        if axis is not None:
+            out.append(axis)
+        if len(out) == most:
+            break
+    return out
+
+
+def _widest(number: Number) -> Axis | None:
+    """Return the number's own range, within WIDEST.
+
+    It is None for whole numbers and zeros, which have no multiples.
+    """
+    if number.whole or number.value == 0:
+        return None
+    ends = sorted(factor * number.value for factor in WIDEST)
+    return Axis(number, max(number.low, ends[0]), min(number.high, ends[1]))
+
+
+def _that_solves(solved: Solved, axis: Axis) -> Axis | None:
+    """Return ends that both solve while all other numbers stay; None without such."""
+    for _ in range(TRIES):
+        if all(solved.numbers_at({axis.name: end}) is not None for end in (axis.low, axis.high)):
+            return axis
+        axis = axis.narrower()
+    return None
+
 
 SHAPES = ((3, 5), (3, 4), (2, 7), (2, 5), (1, 9))
 """Numbers and nodes of each: the first that is exact enough and small enough is taken."""
@@ -63,10 +183,10 @@ def table_of(author: Author) -> Table | None:
 
 def _filled(solved: Solved, axes: list[Axis], per_axis: int, words: dict[str, dict[str, str]]) -> Table | None:
     """Return the designs on the grid; None if one is not solved or interpolation is not exact enough."""
-    points = [chebyshev.nodes(axis.low, axis.high, per_axis) for axis in axes]
+    points = [nodes(axis.low, axis.high, per_axis) for axis in axes]
     names = [axis.name for axis in axes]
     rows = []
-    for place in chebyshev.grid(points):
+    for place in grid(points):
         row = solved.numbers_at(dict(zip(names, place, strict=True)))
         if row is None:
             return None
@@ -79,7 +199,7 @@ def _filled(solved: Solved, axes: list[Axis], per_axis: int, words: dict[str, di
         exact = solved.numbers_at(dict(zip(names, place, strict=True)))
         if exact is None:
             return None
-        shown = low + span / STEPS * (chebyshev.tensor_weights(place, points) @ codes)
+        shown = low + span / STEPS * (tensor_weights(place, points) @ codes)
         worst = [max(pair) for pair in zip(worst, solved.away(shown, exact), strict=True)]
         if worst[0] > PLACES or worst[1] > EFFORTS:
             return None

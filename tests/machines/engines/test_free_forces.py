@@ -14,7 +14,7 @@ from mbsd.machines.engines.bank_angles import FAMILIES, bank_angles, gas_torque
 from mbsd.machines.engines.engine import engine
 from mbsd.machines.engines.free_forces import free_forces, piston_harmonics, rotating_forces
 from mbsd.machines.engines.layout import INLINE_THROWS, Layout, boxer, even_split, fan, inline, layout, staggered, vee
-from tools.documents.engines.bank_angles import ANGLES, LAYOUTS, layout_table
+from tools.documents.bank_angles import ANGLES, LAYOUTS, layout_table
 from tools.documents.pages import between
 
 CASE = json.loads((Path(__file__).parents[2] / "published/reference/engine_free_forces.json").read_text())

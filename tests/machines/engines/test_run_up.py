@@ -18,8 +18,8 @@ from mbsd import ModelError, study
 from mbsd.machines.engines.block import Block, mount_response, mounts_of_frequency
 from mbsd.machines.engines.engine import engine
 from mbsd.machines.engines.run_up import run_up
-from tools.documents.engines.run_up import BEGIN, DAMPING_RATIO, END, GRID, RATES, build, measure, picture, table
 from tools.documents.pages import between, replaced
+from tools.documents.run_up import BEGIN, DAMPING_RATIO, END, GRID, RATES, build, measure, picture, table
 
 PLACES = ((-0.30, -0.10), (0.30, -0.10), (0.0, 0.20))
 SIZE = {"bore": 0.08, "stroke": 0.08, "rod": 0.14, "piston_mass": 0.5, "rod_mass": 0.6}

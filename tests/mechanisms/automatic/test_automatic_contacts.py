@@ -18,7 +18,7 @@ from mechanisms.stages.automatic.rolling.rounds import Round
 from mechanisms.stages.parts.meshes import check_mesh, only_solid
 from mechanisms.stages.parts_files import read_mesh, stl_bytes
 from shared.shapes.facets import volume_of
-from shared.shapes.polyline import distances
+from shared.shapes.outline import distances
 from shared.stage.errors import UserError
 
 

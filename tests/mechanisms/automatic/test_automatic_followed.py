@@ -16,7 +16,7 @@ from mechanisms.stages.automatic.layout.curves import continued, followed
 from mechanisms.stages.automatic.rolling.roads import Road, along, band, banded, with_shared_roads
 from mechanisms.stages.automatic.rolling.rounds import Round
 from mechanisms.stages.automatic.slides.curved_slots import CurvedSlot
-from shared.shapes.polyline import distances
+from shared.shapes.outline import distances
 from shared.stage.errors import UserError
 
 

@@ -11,7 +11,7 @@ from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.layout.curves import curve_path
 from mechanisms.stages.automatic.rolling.roads import Road
 from mechanisms.stages.automatic.rolling.rounds import Round
-from shared.shapes.polyline import distances
+from shared.shapes.outline import distances
 
 HILLS = [(-0.2, 0.0), (-0.1, 0.01), (0.0, 0.0), (0.1, -0.01), (0.2, 0.0), (0.3, 0.01), (0.4, 0.0)]
 

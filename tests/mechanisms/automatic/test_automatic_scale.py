@@ -14,7 +14,7 @@ from mechanisms.stages.clearance.path import at_scale, what_shrinks
 from mechanisms.stages.loading.wishes import scaling
 from mechanisms.stages.solve.motion_file import to_motion
 from shared.shapes.bodies import Bodies
-from shared.shapes.fit import Fit
+from shared.shapes.standards import Fit
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
 from shared.stage.scale import Scale, scale_of

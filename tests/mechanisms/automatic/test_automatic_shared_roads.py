@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from mbsd import Mechanism, constant_rate, curve
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.rolling.roads import Road, along, with_shared_roads
-from shared.shapes.polyline import distances
+from shared.shapes.outline import distances
 from tests.mechanisms.automatic.layouts import meets
 from tests.shared.shape_checks import checked
 

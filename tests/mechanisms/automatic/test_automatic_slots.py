@@ -14,8 +14,8 @@ from mechanisms.stages.automatic.layout.items import spans_meet
 from mechanisms.stages.automatic.pins.welds import Weld
 from mechanisms.stages.automatic.slides.curved_slots import CurvedSlot
 from mechanisms.stages.automatic.slides.slots import Slot
-from shared.shapes.band import band, loop, sharpest
 from shared.shapes.build import extruded
+from shared.shapes.outline import band, loop, sharpest
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.layouts import meets
 from tools.hunt_parts.case import parts_of

@@ -12,7 +12,7 @@ from mbsd import Mechanism, constant_rate, four_stroke
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.layout.planar import Rounded, least_gap
 from mechanisms.stages.automatic.pins.springs import Stretching, Stud
-from shared.shapes.stud import Collar, ball_stud
+from shared.shapes.screw import Collar, ball_stud
 
 
 def crank_rocker(scale: float = 1.0, turn: float = 0.0) -> Mechanism:

@@ -12,7 +12,7 @@ from mbsd.results.solution import Solution
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.rolling.tracks import Track, circle, turns_left
 from mechanisms.stages.automatic.rolling.tracks import closed_normals as normals
-from shared.shapes.polyline import distances
+from shared.shapes.outline import distances
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.layouts import meets
 from tools.hunt_parts.case import parts_of

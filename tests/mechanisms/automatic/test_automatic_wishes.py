@@ -11,9 +11,8 @@ from mbsd import Mechanism, constant_rate
 from mechanisms.stages.automatic.automatic import Automatic, automatic
 from mechanisms.stages.automatic.layout.sizes import STANDARD, of_pin
 from mechanisms.stages.parts_files import read_triangles, stl_bytes
-from shared.shapes.fit import Fit
 from shared.shapes.solid import Solid
-from shared.shapes.standards import CIRCLIPS, SHIM_OUTER, screw_length, screw_name
+from shared.shapes.standards import CIRCLIPS, SHIM_OUTER, Fit, screw_length, screw_name
 from shared.stage.errors import UserError
 from tests.shared.shape_checks import checked
 

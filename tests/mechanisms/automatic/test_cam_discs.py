@@ -11,9 +11,9 @@ from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.layout.curves import curve_path, set_back
 from mechanisms.stages.parts.meshes import check_mesh, only_solid
 from mechanisms.stages.parts_files import read_mesh, stl_bytes
-from shared.shapes.cam import cam_disc
+from shared.shapes.cams import cam_disc
 from shared.shapes.facets import volume_of
-from shared.shapes.polyline import distances
+from shared.shapes.outline import distances
 from shared.stage.errors import UserError
 from tools.models.four_bars import model
 

@@ -14,7 +14,7 @@ from mechanisms.stages.automatic.layout.layers import Clauses, Purse, Undecided
 from mechanisms.stages.automatic.pins.bridges import Swept
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.layouts import meets
-from tools.models.walkers import walker
+from tools.models.linkages import walker
 
 LEGS = 8
 

@@ -18,8 +18,7 @@ from tools.hunt.loop import seeds
 from tools.hunt.outcome import CaseResult
 from tools.hunt_parts import case
 from tools.hunt_parts.__main__ import hunt
-from tools.hunt_parts.kept import Kept
-from tools.hunt_parts.outcome import BUILT, COLLIDES, ERROR, STUCK, UNSOUND, reason
+from tools.hunt_parts.outcome import BUILT, COLLIDES, ERROR, STUCK, UNSOUND, Kept, reason
 from tools.models.four_bars import angles, model
 
 SEED = 4_000_000
@@ -85,7 +84,7 @@ def test_every_four_bar_whose_crank_turns_gets_an_order() -> None:
 def test_a_short_hunt_for_parts_writes_its_report(out_root: Path) -> None:
     assert hunt(3, seed=4, jobs=1, kind="four-bar, crank turns", solids=False) == 0
     report = json.loads((out_root / "hunt_parts.json").read_text())
-    assert report["cases"][BUILT] == sum(report["cases"].values()) == 3
+    assert report["solutions"][BUILT] == report["cases"] == 3
 
 
 @pytest.mark.slow
@@ -103,7 +102,7 @@ def test_a_hunt_goes_on_where_it_was_stopped(out_root: Path) -> None:
     told = [json.loads(line) for line in lines.read_bytes().splitlines()]
     assert [record["seed"] for record in told] == list(seeds(4, 3))
     assert told[0]["sources"].startswith("x"), "it is not looked at again"
-    assert json.loads((out_root / "hunt_parts.json").read_text())["cases"][BUILT] == 3
+    assert json.loads((out_root / "hunt_parts.json").read_text())["solutions"][BUILT] == 3
     hunt(1, **asked, anew=True)
     (line,) = lines.read_bytes().splitlines()
     assert json.loads(line)["sources"] == kept.sources

@@ -19,8 +19,8 @@ from mechanisms.stages.solve.motion_file import to_motion
 from render.film.poses import Moment, Poses
 from render.film.tubes.belts import belts
 from shared.contract import BodyParts, Held, Motion, Parts, Piece
-from shared.contract.belt_path import BeltPath
 from shared.contract.clearance import Clearance
+from shared.contract.geometry import BeltPath
 from shared.stage.errors import UserError
 from tests.mechanisms.clearance.clearance_pieces import NO_MASS, box, disc, parts_of
 from tests.render.film.test_belts import drive

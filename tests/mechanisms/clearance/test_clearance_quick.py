@@ -13,8 +13,8 @@ from mechanisms.stages.clearance import pieces as distinct_file
 from mechanisms.stages.clearance.pieces import distinct
 from mechanisms.stages.clearance.turn import _bounds, _box_gap
 from mechanisms.stages.parts_files import TOLERANCE, read_triangles, stl_bytes
-from shared.shapes.fit import Fit
 from shared.shapes.pin import pin
+from shared.shapes.standards import Fit
 
 few = st.sampled_from([-1.5, -0.0, 0.0, 1e-300, 0.1, 0.1 + 2**-56, 7.0])
 

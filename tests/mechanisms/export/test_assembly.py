@@ -17,8 +17,8 @@ from mechanisms.stages.export.assembly import Wanted, step, with_ordered_styles
 from mechanisms.stages.parts.bodies import described_body
 from mechanisms.stages.solve.motion_file import to_motion
 from shared.contract import Parts, Provenance
+from shared.contract.geometry import with_rods
 from shared.contract.materials import MATERIALS
-from shared.contract.spanning import with_rods
 from shared.shapes.solid import Solid
 from shared.stage.errors import UserError
 from shared.stage.files import write_bytes

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, constant_rate
-from mbsd.base.csv_text import FORMULA, csv_text, frame_csv
+from mbsd.base.files import FORMULA, csv_text, frame_csv
 from mechanisms.stages.export import stage as export
 from mechanisms.stages.export.assembly import Wanted
 from mechanisms.stages.print.making import HEADER, Bought, table

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from mechanisms.belt_drive import mechanism as belt
 from mechanisms.planetary_gear import mechanism as planetary
 from mechanisms.rack_steering import mechanism as steering
-from shared.contract.belt_path import BeltPath
+from shared.contract.geometry import BeltPath
 
 
 @settings(max_examples=8, deadline=None)

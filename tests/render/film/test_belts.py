@@ -20,7 +20,7 @@ from render.glb.document import Animation, Document, Paints
 from render.glb.tubes import add_belt
 from render.report.travel import releases
 from shared.contract import Held, Motion
-from shared.contract.belt_path import BeltPath
+from shared.contract.geometry import BeltPath
 from shared.stage.errors import UserError
 from tests.shared.shape_checks import checked
 from tools.models.outlines import inside

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from shared.cluster.hands import Work
+from shared.cluster.deal import Work
 from shared.stage.errors import UserError
 
 HANGS = 3.0

@@ -12,7 +12,7 @@ from typing import Any
 import msgspec
 
 from mbsd.dealing.report import Report, encoded
-from shared.cluster.hands import perform
+from shared.cluster.deal import perform
 
 
 def _done(keys: Sequence[str], content: Any = b"x") -> bytes:

@@ -14,11 +14,9 @@ from pathlib import Path
 import psutil
 import pytest
 
-from shared.cluster import authority
 from shared.cluster.__main__ import is_loopback, refuse_open
-from shared.cluster.address import address, connected
-from shared.cluster.contents import Contents, content_hash
-from shared.cluster.deal import Deal
+from shared.cluster.address import address, connected, make
+from shared.cluster.deal import Contents, Deal, content_hash
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
 from tests.running.processes import ends_with_us
@@ -80,10 +78,10 @@ def test_a_cluster_with_certificates_does_work_and_lets_nobody_else_in(
     """Its worker outlives the scheduler, and ends when the process that keeps it is killed. Both listen on the address
     of their HOST alone.
     """
-    authority.make(tmp_path / "certificates")
+    make(tmp_path / "certificates")
     assert (tmp_path / "certificates" / "key.pem").stat().st_mode & 0o077 == 0
     with pytest.raises(UserError, match="there already"):
-        authority.make(tmp_path / "certificates")
+        make(tmp_path / "certificates")
     port = free_port()
     monkeypatch.setenv("CLUSTER_TLS", str(tmp_path / "certificates"))
     monkeypatch.setenv("MBSD_OUT", str(tmp_path / "out"))
@@ -107,7 +105,7 @@ def test_a_cluster_with_certificates_does_work_and_lets_nobody_else_in(
                 if life == "second":
                     monkeypatch.setattr("mbsd.dealing.connection.TIMEOUT", 1.0)
                     other = tmp_path / "others"
-                    authority.make(other)
+                    make(other)
                     monkeypatch.setenv("CLUSTER_TLS", str(other))
                     with pytest.raises(UserError, match="no scheduler answers"), connected():
                         pass
@@ -121,9 +119,9 @@ def test_a_cluster_with_certificates_does_work_and_lets_nobody_else_in(
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ("server", "no address"),
-        ("tcp://server", "no address"),
-        ("http://server:1", "no address"),
+        ("server", "is not the address"),
+        ("tcp://server", "is not the address"),
+        ("http://server:1", "is not the address"),
         ("tls://a:1", "CLUSTER_TLS"),
     ],
 )

@@ -18,8 +18,7 @@ from mbsd.dealing.connection import tasks_of, workers_of
 from mbsd.dealing.identity import together
 from mbsd.dealing.manner import Manner
 from mbsd.dealing.pools import Dask, Gone
-from shared.cluster.contents import content_hash
-from shared.cluster.deal import Deal
+from shared.cluster.deal import Deal, content_hash
 from shared.stage.errors import UserError
 from tests.shared.cluster import acting
 

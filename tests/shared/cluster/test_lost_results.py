@@ -15,9 +15,7 @@ import pytest
 from mbsd.dealing import deal, hand
 from mbsd.dealing.manner import Manner
 from mbsd.dealing.report import Report, encoded
-from shared.cluster.contents import content_hash
-from shared.cluster.deal import Deal
-from shared.cluster.hands import perform
+from shared.cluster.deal import Deal, content_hash, perform
 from tests.shared.cluster import acting
 from tests.studies.fake_cluster import FakeClient, Held
 

@@ -14,9 +14,7 @@ import pytest
 from mbsd.dealing import deal, hand
 from mbsd.dealing.pools import Dask
 from mbsd.dealing.report import WrongAnswer, printable
-from shared.cluster.contents import content_hash
-from shared.cluster.deal import Deal
-from shared.cluster.hands import Work
+from shared.cluster.deal import Deal, Work, content_hash
 from shared.stage.errors import UserError
 from tests.shared.cluster import lying
 

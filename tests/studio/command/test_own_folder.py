@@ -12,7 +12,7 @@ import pytest
 
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
-from studio.command import settings
+from studio.command.place import read
 
 CRANK = '''"""A crank of {length} m."""
 from dataclasses import dataclass
@@ -81,7 +81,10 @@ def test_folders_and_files_are_solved_where_they_lie_and_again_only_when_they_ch
         assert done.returncode == 0, done.stderr
         assert "nothing to do" not in done.stdout.splitlines()[-1]
         assert (folder / "out" / name / "data.json").is_file()
+        half = folder / "out" / name / ".animation-0123abcd.mp4"  # of an animate that was killed
+        half.write_bytes(b"half a film")
         assert f"solve: {name}: nothing to do" in mbsd("solve", name, at=folder).stdout
+        assert not half.exists()
     (folder / "lengths.py").write_text("LENGTH = 0.031\n")
     assert "solve: arm: nothing to do" in mbsd("solve", "arm", at=folder).stdout
     assert "nothing to do" not in mbsd("solve", "wheel", at=folder).stdout.splitlines()[-1]
@@ -132,7 +135,7 @@ def test_settings_are_said_once_and_found_from_below(folder: Path) -> None:
     assert machine.endswith("of full size, only if the motion needs their masses")
     assert scaled.startswith("parts wheel --scale 1:5  ")
     assert f"{folder}/results/wheel/scale_1_5/parts/" in scaled
-    assert "--scale tiny is no scale" in mbsd("print", "wheel", "--scale", "tiny", at=folder).stderr
+    assert "--scale tiny is not a scale" in mbsd("print", "wheel", "--scale", "tiny", at=folder).stderr
     for command in ("parts", "clearance", "film"):
         assert "scale" not in mbsd(command, "wheel", "--plan", at=folder).stdout
     done = mbsd("solve", at=folder / "arm")
@@ -144,8 +147,8 @@ def test_settings_are_said_once_and_found_from_below(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ('preset = "huge"', "--preset huge in mbsd.toml is no preset; choose one of: draft"),
-        ('colour = "red"', "unknown field `colour`; it may say: preset, aspect"),
+        ('preset = "huge"', "--preset huge in mbsd.toml is not a valid preset; choose one of: draft"),
+        ('colour = "red"', "unknown field `colour`; its fields are: preset, aspect"),
         ("preset = ", "mbsd.toml: "),
     ],
 )
@@ -160,7 +163,7 @@ def test_unfit_settings_are_refused(folder: Path, text: str, said: str) -> None:
 def test_a_byte_order_mark_is_no_setting(tmp_path: Path) -> None:
     """Editors on Windows write one."""
     (tmp_path / "mbsd.toml").write_bytes(b'\xef\xbb\xbfpreset = "draft"\n')
-    assert settings.read(tmp_path).preset == "draft"
+    assert read(tmp_path).preset == "draft"
 
 
 @pytest.mark.parametrize(
@@ -180,7 +183,7 @@ def test_files_that_are_no_settings_are_refused_in_a_sentence(tmp_path: Path, co
     """They ended in tracebacks."""
     (tmp_path / "mbsd.toml").write_bytes(content)
     with pytest.raises(UserError, match=said) as refused:
-        settings.read(tmp_path)
+        read(tmp_path)
     assert str(refused.value).startswith(f"{tmp_path / 'mbsd.toml'}")
 
 
@@ -223,7 +226,7 @@ def test_a_machine_may_be_given_by_its_path(folder: Path, path: str) -> None:
 def test_a_path_without_a_machine_is_an_error(folder: Path) -> None:
     missing = mbsd("check", "lamp.py", at=folder)
     assert missing.returncode == 1
-    assert "error: lamp.py is no file or folder of a mechanism; give the name or the path" in missing.stderr
+    assert "error: lamp.py is not a file or folder of a mechanism; give the name or the path" in missing.stderr
     (folder / "empty").mkdir()
     assert "error: empty/ has no mechanism.py" in mbsd("check", "empty/", at=folder).stderr
     assert "there is: arm, wheel; did you mean 'wheel'?" in mbsd("check", "Wheel", at=folder).stderr
@@ -253,7 +256,7 @@ def test_a_machine_that_is_not_there_is_refused_with_those_that_are(folder: Path
     done = mbsd("run", "whel", at=folder)
     assert done.returncode == 1
     assert f"there is no mechanism 'whel' in {folder}; there is: arm, wheel; did you mean 'wheel'?" in done.stderr
-    assert "say which machine; there is: arm, wheel" in mbsd("run", at=folder).stderr
+    assert "name a mechanism; there is: arm, wheel" in mbsd("run", at=folder).stderr
     (folder / "empty").mkdir()
     assert "mbsd new excavator makes one" in mbsd("run", at=folder / "empty").stderr
     assert mbsd("rnu", "arm", at=folder).returncode == 2
@@ -262,12 +265,12 @@ def test_a_machine_that_is_not_there_is_refused_with_those_that_are(folder: Path
 def test_what_is_no_folder_or_has_two_of_a_name_is_refused(folder: Path) -> None:
     for place in ("nowhere", "wheel.py"):
         done = mbsd("-C", place, "list", at=folder)
-        assert (done.returncode, f"{folder / place} is no folder" in done.stderr) == (1, True)
+        assert (done.returncode, f"{folder / place} is not a folder" in done.stderr) == (1, True)
     (folder / "wheel").mkdir()
     (folder / "wheel" / "mechanism.py").write_text(crank("wheel"))
     done = mbsd("solve", "wheel", at=folder)
     assert done.returncode == 1
-    assert f"wheel/mechanism.py and wheel.py in {folder} have one name; give one another name" in done.stderr
+    assert f"wheel/mechanism.py and wheel.py in {folder} have the same name; rename one of them" in done.stderr
     (folder / "wheel" / "mechanism.py").unlink()
     assert "write VARIANTS" in (said := mbsd("compare", "wheel", at=folder).stderr)
     assert "beside build() in wheel.py, each" in said

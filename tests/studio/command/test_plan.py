@@ -10,8 +10,8 @@ import pytest
 
 from shared.stage.paths import ROOT
 from studio.command.main import parser
-from studio.command.options import OPTIONS
-from studio.command.plan import plan_line
+from studio.command.running import plan_line
+from studio.command.stages import OPTIONS
 from studio.command.table import COMMANDS
 
 MODEL = """from dataclasses import dataclass
@@ -56,4 +56,4 @@ def test_an_option_given_twice_is_joined_or_refused(tmp_path: Path) -> None:
     assert planned.stdout.startswith("study lamp --over 'crank=0.02,0.03; speed=1,2'  "), planned.stderr
     refused = mbsd("film", "lamp", "--preset", "draft", "--preset", "final", "--plan", at=tmp_path)
     assert refused.returncode == 2
-    assert "--preset takes one value, and has draft and final" in refused.stderr
+    assert "--preset takes one value, but was given draft and final" in refused.stderr

@@ -14,8 +14,8 @@ from render import usd
 from shared.stage.paths import ROOT
 from studio.command import completion
 from studio.command.main import parser
-from studio.command.options import OPTIONS
-from studio.command.settings import Settings
+from studio.command.place import Settings
+from studio.command.stages import OPTIONS
 from studio.command.table import COMMANDS
 from tests.project.test_injection import NASTY
 

@@ -61,8 +61,8 @@ SPATIAL = (SAMPLES / "piston.asmt").read_text()
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("RevoluteJoint", "SphericalJoint", "no joint says in which plane it moves"),
-        ("CylindricalJoint", "ScrewJoint", "ScrewJoint Joint4 cannot be said in the plane of the pins"),
+        ("RevoluteJoint", "SphericalJoint", "no joint gives the plane of motion"),
+        ("CylindricalJoint", "ScrewJoint", "ScrewJoint Joint4 cannot be expressed in the plane of the pins"),
         ("/Assembly1/Part1/Marker2", "/Assembly1/Part1/Marker9", "there is no marker /Assembly1/Part1/Marker9"),
         ("2.0d*pi*time", "step(time)", "'step(time)' is not understood"),
         ("2.0d*pi*time", "__import__('os')", "is not understood"),

@@ -16,12 +16,10 @@ from hypothesis import strategies as st
 from mbsd import MechanismError
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
-from studio.imports.limits import DEEPEST, LARGEST_FILE, MOST
-from studio.imports.names import RESERVED, Names, Titles
+from studio.imports.limits import DEEPEST, LARGEST_FILE, MOST, RESERVED, Names, Titles
 from studio.imports.pmks_records import stamped
-from studio.imports.reading import read, read_text
+from studio.imports.reading import read, read_text, try_out
 from studio.imports.sketch import GROUND, Link, Motor, Pin, Sketch, Slide
-from studio.imports.trial import try_out
 from studio.imports.writing import mechanism_py
 from tests.studio.imports.imported import SAMPLES, built
 from tools.hunt.outcome import AGREED, HUNG, REFUSED, WRONG
@@ -44,17 +42,17 @@ def test_damaged_samples_are_read_or_refused(seed: int) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("http://[", "of no program that is known here"),
-        ("https://app.pmksplus.com:99999999/?[", "its check does not fit"),
-        ("https://app.pmksplus.com/?" + stamped(f"0P.TY.K,0.101.{'7' * 300_000}..YRAB...JB."), "is no joint"),
-        ("https://app.pmksplus.com/?" + stamped(f"{'7' * 300_000}.TY.K,0.101.....JB."), "is no number"),
+        ("http://[", "not a file of a known program"),
+        ("https://app.pmksplus.com:99999999/?[", "its checksum is wrong"),
+        ("https://app.pmksplus.com/?" + stamped(f"0P.TY.K,0.101.{'7' * 300_000}..YRAB...JB."), "is not a joint"),
+        ("https://app.pmksplus.com/?" + stamped(f"{'7' * 300_000}.TY.K,0.101.....JB."), "is not a number"),
         ("mech=\n" + PIN + "a,b,R," + "9" * 400 + ",0,0,tfff\n", "it must be a number up to 1e+09"),
         ("mech=\n" + PIN + "a,b,R,nan,0,0,tfff\n", "points of link 'a' is nan"),
         ("mech=\n" + PIN + "a,b,R,1e999,0,0,tfff\n", "it must be a number up to 1e+09"),
         ("mech=\n" + PIN * 500, f"it has 500 joints; a mechanism that can be imported has {MOST} at most"),
-        ('{"TypeOfJoint": ' + "[" * DEEP, "its JSON is nested too deep"),
-        ('{"TypeOfJoint": 1, "x": ' + "9" * 5000 + "}", "is no finite number"),
-        ('{"TypeOfJoint": NaN}', "NaN is no finite number"),
+        ('{"TypeOfJoint": ' + "[" * DEEP, "its JSON is nested too deeply"),
+        ('{"TypeOfJoint": 1, "x": ' + "9" * 5000 + "}", "is not a finite number"),
+        ('{"TypeOfJoint": NaN}', "NaN is not a finite number"),
         ('{"TypeOfJoint": 1, "Joints": [{"Links": ["a"], "TypeOfJoint": "R", "X": null, "Y": 0}]}', "it is damaged"),
         ('{"joints": [], "links": [], "position": 0}', "nothing in it moves"),
         ('{"joints": [], "links": [{"id": "a", "joints": []}], "position": 0}', "link 'a' has no joints"),
@@ -65,7 +63,7 @@ def test_damaged_samples_are_read_or_refused(seed: int) -> None:
         ('<linkage2><Link id="1"/><connector id="1"/>', "nothing in it moves"),
         ("Assembly\n" + "\n".join("\t" * k + "a" for k in range(1, 500)), f"it is nested deeper than {DEEPEST} levels"),
         ("Assembly\n\tName\n\t\ta\n\tParts\n" + "\t\tPart\n\t\t\tName\n\t\t\t\tb\n" * 2, "two parts of the name b"),
-        ("0\nSECTION\n2\nENTITIES\n0\nCIRCLE\n10\nx\n", "this is no DXF that can be read"),
+        ("0\nSECTION\n2\nENTITIES\n0\nCIRCLE\n10\nx\n", "this is not a readable DXF"),
     ],
     ids=lambda text: text[:30],
 )
@@ -213,7 +211,7 @@ def test_a_file_that_does_not_load_is_never_left(tmp_path: Path) -> None:
     command = [sys.executable, "-P", "-m", "mbsd", "import", "piston.json"]
     done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
     assert (done.returncode, "Traceback" in done.stderr) == (1, False)
-    assert "what was read makes no mechanism: piston: body 'crank'" in done.stderr
+    assert "the file makes no valid mechanism: piston: body 'crank'" in done.stderr
     assert [path.name for path in tmp_path.iterdir()] == ["piston.json"]
     file.write_text(text)
     done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)

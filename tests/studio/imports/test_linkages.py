@@ -12,9 +12,8 @@ import pytest
 
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
-from studio.imports.reading import read, read_text
+from studio.imports.reading import difference, read, read_text
 from studio.imports.sketch import GROUND, Link, Motor, Pin, Sketch, Slide
-from studio.imports.trial import difference
 from studio.imports.writing import mechanism_py
 from tests.studio.imports.imported import SAMPLES, built
 
@@ -91,12 +90,12 @@ def test_pylinkage_is_read() -> None:
 @pytest.mark.parametrize(
     ("content", "said"),
     [
-        (b"", "is of no program that is known here; known are: PMKS+"),
-        (b"hello", "is of no program that is known here"),
-        (b"\0\1\2", "is no text"),
+        (b"", "is not a file of a known program; known are: PMKS+"),
+        (b"hello", "is not a file of a known program"),
+        (b"\0\1\2", "is not text"),
         (b"<linkage2></linkage2>", "the file has no links"),
-        (b"ground,input,R,a,b", "is of no program"),
-        (b"mech=\nground,input,R,1,2\nrubbish", "line 3 is no joint of PMKS"),
+        (b"ground,input,R,a,b", "is not a file of a known program"),
+        (b"mech=\nground,input,R,1,2\nrubbish", "line 3 is not a joint of PMKS"),
         (b'{"joints": [], "links": [{"position": 1}]}', "no file of pylinkage (JSON) (KeyError: 'id')"),
         (b'{"TypeOfJoint"', "its JSON cannot be read"),
         (b"freeCAD\nAssembly\n", "Assembly has no Name"),
@@ -122,7 +121,7 @@ def test_links_of_pmks_may_be_called_as_a_kind_of_joint(tmp_path: Path) -> None:
     file.write_text((SAMPLES / "4bar1.txt").read_text().replace("input", "R").replace("output", "P"))
     assert set(read(str(file)).links) == {"R", "coupler", "P"}
     file.write_text("mech=\nground,R,R,x,1,2\n")
-    with pytest.raises(UserError, match="line 2 is no joint of PMKS"):
+    with pytest.raises(UserError, match="line 2 is not a joint of PMKS"):
         read(str(file))
 
 
@@ -153,7 +152,7 @@ def test_freedoms_that_differ_from_the_files_are_said(tmp_path: Path) -> None:
 
 def test_freedoms_that_differ_though_nothing_was_left_out_are_an_error() -> None:
     text = (SAMPLES / "slider_crank_mbsd_core.json").read_text().replace('"revolute_joints": 3', '"revolute_joints": 2')
-    with pytest.raises(UserError, match="its counts say 2 revolute joints, and it has 3"):
+    with pytest.raises(UserError, match="its counts say 2 revolute joints, and there are 3"):
         read_text(text, "a.json")
     sketch = read(str(SAMPLES / "4bar1.txt"))
     del sketch.joints[1]

@@ -63,5 +63,5 @@ def test_what_is_no_planar_mechanism_is_refused(tmp_path: Path, parts: dict[str,
 def test_links_that_cannot_close_are_refused(tmp_path: Path) -> None:
     joints = json.loads(SAMPLE.read_text())["joints"]
     joints["prismatic"][0]["point_rail"] = [0.0, 0.5]
-    with pytest.raises(UserError, match="no pose was seen"):
+    with pytest.raises(UserError, match="no pose was found"):
         read(str(changed(tmp_path, joints=joints)))

@@ -149,21 +149,21 @@ def test_a_mark_corrects_a_number_that_thousandths_cannot_hold() -> None:
     assert exact.motors[0].rate == pytest.approx(2.5 * math.tau / 60)
     faster = read(stamped(ADDRESSES["four_bar"][:-1] + ".PI~0~12.5q"))
     assert faster.motors[0].rate == pytest.approx(-12.5 * math.tau / 60)
-    with pytest.raises(UserError, match="corrects no number that is there"):
+    with pytest.raises(UserError, match="corrects a number that does not exist"):
         read(stamped(ADDRESSES["four_bar"][:-1] + ".PJB~7~1q"))
 
 
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (lambda text: text[:60], "its check does not fit: it was changed or cut off; copy all of it, in quotes"),
+        (lambda text: text[:60], "its checksum is wrong: it was changed or cut off; copy all of it, in quotes"),
         (lambda text: stamped(text[:60]), "a list of its records does not end; copy all of it"),
         (lambda text: stamped(text[:15]), "5 of 7 sections are there"),
-        (lambda text: text.replace("0e_", "0e-") + "*3AbCdE", "its digest does not fit"),
+        (lambda text: text.replace("0e_", "0e-") + "*3AbCdE", "its digest is wrong"),
         (lambda text: stamped(text.replace("GB,B", "GA,B")), "there are two joints A"),
-        (lambda text: stamped(text.replace(",A,B,,", ",A,Z,,")), "link AB has a joint Z, which is not there"),
-        (lambda text: stamped(text.replace("0mv", "0m+")), "'0m+' is no number"),
-        (lambda text: stamped(text.replace("0mv", "9" * 400)), "is no number"),
+        (lambda text: stamped(text.replace(",A,B,,", ",A,Z,,")), "link AB has a joint Z, which does not exist"),
+        (lambda text: stamped(text.replace("0mv", "0m+")), "'0m+' is not a number"),
+        (lambda text: stamped(text.replace("0mv", "9" * 400)), "is not a number"),
         (lambda _: "pmks2:0123abcd.eyJ9", "a document of the new editor"),
     ],
 )

@@ -21,7 +21,7 @@ import mechanisms
 from mechanisms.stages.loading import loading
 from shared.stage import paths
 from studio.live.__main__ import bound
-from studio.live.frames import unframed
+from studio.live.messages import unframed
 from studio.live.processes import nursery
 from studio.live.processes.trees import MARK
 from studio.live.server import LARGEST, Live

@@ -13,7 +13,7 @@ import psutil
 import pytest
 
 from studio.live.processes import stages
-from studio.live.processes.lines import LONGEST
+from studio.live.processes.pipe import LONGEST
 from tests.studio.live.arm import ARM
 from tests.studio.live.served import Page, Served, served
 

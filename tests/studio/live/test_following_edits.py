@@ -1,4 +1,4 @@
-"""The server follows the editor: two hundred edits, half of them broken, and none brings it down."""
+"""The server follows the editor: eighty edits, half of them broken, and none brings it down."""
 
 from __future__ import annotations
 
@@ -46,14 +46,14 @@ def good(length: float) -> str:
     return ARM.replace("length: float = 0.2 ", f"length: float = {length!r} ")
 
 
-def test_two_hundred_edits_half_of_them_broken(live: Served) -> None:
+def test_eighty_edits_half_of_them_broken(live: Served) -> None:
     chosen = random.Random(20)
     process = psutil.Process()
     used: list[int] = []
     children: list[int] = []
     with live.page() as page:
         page.hear("motion", "state", wanted=lambda header: bool(header["payload"]))
-        for k in range(200):
+        for k in range(80):
             length = 0.1 + k / 1000
             if k % 2:
                 kind = chosen.choice(sorted(BROKEN))
@@ -69,7 +69,7 @@ def test_two_hundred_edits_half_of_them_broken(live: Served) -> None:
                 assert solved["numbers"][1]["name"] == "speed"
                 assert page.hear("motion")["payload"]
                 assert live.session.board.error is None
-            if k in (60, 199):
+            if k in (40, 79):
                 used.append(process.memory_info().rss)
                 children.append(len(process.children(recursive=True)))
     assert used[1] - used[0] < 24e6, "memory is flat"
@@ -133,20 +133,3 @@ def test_what_is_printed_and_warned_reaches_the_page(live: Served) -> None:
         assert "said by the file" in state["lines"]
         assert state["payload"]
         assert state["error"] is None
-
-
-def test_an_edit_is_seen_within_a_second(live: Served) -> None:
-    """By the processor time of the child and by the best of some: other programs may keep the machine busy."""
-    waits, spent = [], []
-    with live.page() as page:
-        for k in range(6):
-            began = time.monotonic()
-            live.write(good(0.41 + k / 100))
-            page.hear("motion")
-            waits.append(time.monotonic() - began)
-            child = live.session._good
-            assert child is not None
-            used = psutil.Process(child.pid).cpu_times()
-            spent.append(used.user + used.system)
-    assert min(spent) < 0.5
-    assert min(waits) < 1.0 * max(1.0, os.getloadavg()[0])

@@ -9,7 +9,7 @@ import httpx
 import pytest
 from websockets.exceptions import InvalidStatus
 
-from studio.live.gate import Gate
+from studio.live.server import Gate
 from tests.studio.live.arm import ARM
 from tests.studio.live.served import Served, served
 

@@ -11,9 +11,8 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 
 from shared.stage.errors import UserError
-from studio.live import mailbox
-from studio.live.mailbox import Mailbox
-from studio.live.wishes import Cancel, Drag, Fit, Set, Thing, Write, wish_of
+from studio.live import messages
+from studio.live.messages import Cancel, Drag, Fit, Mailbox, Set, Thing, Write, wish_of
 from tests.studio.live.arm import ARM
 from tests.studio.live.served import Page, Served, served
 
@@ -157,12 +156,12 @@ def test_a_flood_of_messages_keeps_nobody_else_waiting(live: Served) -> None:
 def test_a_page_that_is_too_slow_gets_the_state_anew(monkeypatch: pytest.MonkeyPatch) -> None:
     """No single message is dropped, since it could report that an error is cured."""
     box = Mailbox(lambda: [b"state"])
-    for k in range(mailbox.MOST):
+    for k in range(messages.MOST):
         box.add(b"%d" % k)
-    assert len(box) == mailbox.MOST
+    assert len(box) == messages.MOST
     box.add(b"one more")
     assert len(box) == 1
-    monkeypatch.setattr(mailbox, "LARGEST", 100)
+    monkeypatch.setattr(messages, "MOST_BYTES", 100)
     for _ in range(50):
         box.add(b"x" * 40, replaces=True)
     assert len(box) == 2

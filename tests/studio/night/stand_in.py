@@ -15,7 +15,7 @@ from pathlib import Path
 
 
 def sleep(seconds: float) -> None:
-    """Sleep, but end with the night, as every stage does (shared/stage/lineage.py)."""
+    """Sleep, but end with the night, as every stage does (shared/stage/signals.py)."""
     end, parent = time.monotonic() + seconds, os.getppid()
     while time.monotonic() < end:
         if os.getppid() != parent:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from studio.night.commands import logout
+from studio.night import background
 from tests.running.needs import needs
 from tests.studio.night.nights import Night, finished, until
 
@@ -39,13 +39,13 @@ def test_it_goes_on_without_its_terminal_and_says_how_to_attach(night: Night, tm
     needs("tmux")
     code, out, err = finished(night.start("four_bar", command="start"))
     assert code == 0, err
-    assert "started as run 1; it goes on after you have logged out" in out
+    assert "started as run 1; it continues after you log out" in out
     attach = re.findall(r"attach to it: tmux (-L \S+) attach -t (night\S*)", out)[0]
     listing = subprocess.run(["tmux", *attach[0].split(), "list-sessions", "-F", "#S"], capture_output=True, text=True)
     assert attach[1] in listing.stdout.split()
     until(lambda: "four_bar clearance" in night.ran())
     again = finished(night.start("slider_crank", command="start"))
-    assert "run 1 is at work already (process" in again[2]
+    assert "run 1 is running already (process" in again[2]
     assert "started as run 2" in again[1]
     assert "attach -t night-2" in again[1]
     until(lambda: "slider_crank film" in night.ran())
@@ -74,16 +74,16 @@ def test_where_the_system_ends_all_at_the_logout_a_scope_and_a_word_stand_agains
         (programs / name).chmod(0o755)
     monkeypatch.setenv("PATH", f"{programs}:{os.environ['PATH']}")
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
-    monkeypatch.setattr(logout, "LINGERING", tmp_path)
+    monkeypatch.setattr(background, "LINGERING", tmp_path)
     monkeypatch.setenv("LOGNAME", "ada")
     said: list[str] = []
-    logout.warn_if_it_ends_all(lambda _, text: said.append(text))
+    background.warn_if_it_ends_all(lambda _, text: said.append(text))
     assert said == ["this system ends all programs of yours when you log out; run: loginctl enable-linger ada"]
-    assert logout.scope()[:3] == ["systemd-run", "--user", "--scope"]
+    assert background.scope()[:3] == ["systemd-run", "--user", "--scope"]
     (tmp_path / "ada").touch()
-    logout.warn_if_it_ends_all(lambda _, text: said.append(text))
+    background.warn_if_it_ends_all(lambda _, text: said.append(text))
     assert len(said) == 1
     (programs / "busctl").write_text("#!/bin/sh\necho 'b false'\n")
-    assert logout.scope() == []
+    assert background.scope() == []
     monkeypatch.setenv("PATH", str(tmp_path))
-    assert not logout.ends_all()
+    assert not background.ends_all()

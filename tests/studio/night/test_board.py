@@ -5,8 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from studio.night.plan.board import Board
-from studio.night.plan.steps import FILM, PROBE, STEPS, followers
+from studio.night.plan.steps import FILM, PROBE, STEPS, Board, followers
 
 NAMES = [f"m{number}" for number in range(4)]
 NEEDS = {step.name: step.needs for step in STEPS}

@@ -12,15 +12,12 @@ import pytest
 from render.presets import PRESETS
 from shared.contract.shot import Shot
 from shared.stage.errors import UserError
-from studio.night import night
-from studio.night.commands import background
+from studio.night import background, night, runs
+from studio.night import forecast as told
 from studio.night.coordinator import Coordinator
-from studio.night.files import record, runs
+from studio.night.forecast import START, Forecast, Frames, forecast
 from studio.night.plan.options import Options
 from studio.night.plan.steps import FILM, STEPS
-from studio.night.progress import forecast as told
-from studio.night.progress.forecast import START, Forecast, forecast
-from studio.night.progress.frames import Frames
 from tools.fixtures import film_fixture
 
 PREVIEW = PRESETS["preview"]
@@ -76,7 +73,7 @@ def test_nothing_left_is_told_as_such(tmp_path: Path):
 
 def test_the_pace_of_a_run_replaces_that_of_the_probe(out_root: Path, monkeypatch: pytest.MonkeyPatch):
     clock = [0.0]
-    monkeypatch.setattr("studio.night.progress.frames.time.monotonic", lambda: clock[0])
+    monkeypatch.setattr("studio.night.forecast.time.monotonic", lambda: clock[0])
     pictures = film("a", 10, 0, 10.0, size=0.0)
     folder = out_root / "a" / "frames" / "preview"
     folder.mkdir(parents=True)
@@ -141,7 +138,7 @@ def test_a_disk_that_turns_out_too_small_when_the_forecast_stands_ends_the_night
     said = capsys.readouterr()
     assert "forecast: 1 film, " in said.out
     assert "ANYWAY=1 begins all the same" in said.err
-    outcome = record.read(runs.Run(1))
+    outcome = runs.read(runs.Run(1))
     assert outcome is not None
     assert outcome.ended == "failed"
     assert outcome.forecast.startswith("not begun: ")

@@ -100,7 +100,7 @@ def test_what_hangs_is_killed_and_started_once_more(night: Night):
     code, _, err = finished(night.start("four_bar", hurried=True, MBSD_PATIENCE="0.05"))
     assert code == 0, err
     assert night.ran().count("four_bar plots") == 2
-    assert "plots gave no sign of life for" in err
+    assert "plots was silent for" in err
 
 
 @pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL], ids=str)
@@ -159,8 +159,8 @@ def test_stop_ends_what_is_beside_the_render_and_says_when_it_has(night: Night):
 def test_words_that_cannot_be_are_refused_in_a_sentence(night: Night):
     for words, told in (
         (("four_bra",), "did you mean 'four_bar'?"),
-        (("four_bar", "--watts=0"), "WATTS=0 is no power"),
-        (("four_bar", "--watts=much"), "WATTS=much is no power"),
+        (("four_bar", "--watts=0"), "WATTS=0 is not a power"),
+        (("four_bar", "--watts=much"), "WATTS=much is not a power"),
     ):
         code, _, err = finished(night.start(*words))
         assert code == 1

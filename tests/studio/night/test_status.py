@@ -9,9 +9,8 @@ import pytest
 from render import freshness
 from shared.stage.paths import Out
 from shared.stage.stages import Stage, key_of
-from studio.night.commands import status
-from studio.night.files.record import FilmRecord, NightRecord
-from studio.night.files.runs import Run
+from studio.night import status
+from studio.night.runs import FilmRecord, NightRecord, Run
 
 NAMES = ["four_bar", "pendulum", "trammel"]
 

@@ -35,7 +35,7 @@ def test_two_rounds(out_root: Path, tmp_path: Path) -> None:
     assert report["rounds"] == len(report["outcomes"]) == 2
     counts = ("wrong", "lost", "redone", "refused", "hangs", "orphans", "tracebacks", "leftovers")
     assert [report[name] for name in counts] == [0] * len(counts)
-    assert report["twice"] <= report["hit"]  # the frame in flight
+    assert report["twice"] <= report["hit"]  # the current frame
     assert not working_for(tmp_path)
     assert not list(tmp_path.glob("mbsd-torture-*"))
 

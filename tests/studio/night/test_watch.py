@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from render.blender.process import FLOOR, KERNELS, TIMES
-from studio.night.watch import STAGE, TWICE, limit
+from studio.night.process import STAGE, TWICE, limit
 
 
 def test_a_render_has_ten_times_a_picture_twice_over_because_its_stage_starts_blender_again(

@@ -9,7 +9,7 @@ import pytest
 from render.view import pictures
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
-from studio.pages import making
+from studio import pages
 
 NAMES = ["four_bar", "pendulum", "trammel"]
 
@@ -26,7 +26,7 @@ class Shop:
             out = Out(name)
             out.folder.mkdir(parents=True)
             out.view.write_text(f"page of {name}")
-        monkeypatch.setattr(making, "_current", lambda names: self.current & set(names))
+        monkeypatch.setattr(pages, "_current", lambda names: self.current & set(names))
         monkeypatch.setattr(pictures, "chromium", lambda: "browser")
         monkeypatch.setattr(pictures, "version_of", lambda browser: self.version)
         monkeypatch.setattr(pictures, "take_picture", self.take)
@@ -45,34 +45,34 @@ def shop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Shop:
 
 
 def test_a_second_run_takes_no_picture(shop: Shop, capsys: pytest.CaptureFixture[str]) -> None:
-    assert making.run(NAMES) == 0
+    assert pages.run(NAMES) == 0
     assert shop.taken == NAMES
     assert "3/3" in capsys.readouterr().out
-    assert making.run(NAMES) == 0
+    assert pages.run(NAMES) == 0
     assert shop.taken == NAMES
     assert "3 of 3 have nothing to do" in capsys.readouterr().out
 
 
 def test_a_picture_is_of_the_pages_bytes_and_the_browser(shop: Shop) -> None:
-    making.run(NAMES)
+    pages.run(NAMES)
     Out("pendulum").view.write_text("another page")
     pictures.picture_of(Out("trammel")).write_bytes(b"cut sh")
-    making.run(NAMES)
+    pages.run(NAMES)
     assert shop.taken[3:] == ["pendulum", "trammel"]
     shop.version = "Browser 2"
-    making.run(NAMES)
+    pages.run(NAMES)
     assert shop.taken[5:] == NAMES
 
 
 def test_failures_are_told_at_the_end_and_the_others_are_made(shop: Shop, capsys: pytest.CaptureFixture[str]) -> None:
     shop.refused = {"four_bar"}
-    assert making.run(NAMES) == 1
+    assert pages.run(NAMES) == 1
     assert shop.taken == ["pendulum", "trammel"]
     said = capsys.readouterr().out
     assert "the page complained" in said.split("what could not be made")[1]
     assert "2 of 3 are there" in said
     shop.refused = set()
-    assert making.run(NAMES) == 0
+    assert pages.run(NAMES) == 0
     assert shop.taken == ["pendulum", "trammel", "four_bar"]
 
 
@@ -84,9 +84,9 @@ def test_a_stopped_run_goes_on(shop: Shop, monkeypatch: pytest.MonkeyPatch) -> N
 
     monkeypatch.setattr(pictures, "take_picture", stop)
     with pytest.raises(KeyboardInterrupt):
-        making.run(NAMES)
+        pages.run(NAMES)
     monkeypatch.setattr(pictures, "take_picture", shop.take)
-    assert making.run(NAMES) == 0
+    assert pages.run(NAMES) == 0
     assert shop.taken == NAMES
 
 
@@ -94,9 +94,9 @@ def test_what_is_out_of_date_is_made_by_its_stages(
     shop: Shop, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Here the stage of the page says why it cannot: there is no motion."""
-    monkeypatch.setattr(making, "STEPS", (("render", "view"),))
+    monkeypatch.setattr(pages, "STEPS", (("render", "view"),))
     shop.current = {"pendulum", "trammel"}
-    assert making.run(NAMES) == 1
+    assert pages.run(NAMES) == 1
     assert shop.taken == ["pendulum", "trammel"]
     assert "run make solve-four-bar" in " ".join(capsys.readouterr().err.split())
 
@@ -105,5 +105,5 @@ def test_without_a_browser_there_are_pages(
     shop: Shop, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(pictures, "chromium", lambda: None)
-    assert making.run(NAMES) == 0
+    assert pages.run(NAMES) == 0
     assert "need Chromium" in capsys.readouterr().err

@@ -15,8 +15,8 @@ from shared.contract import read_motion, write_motion
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
 from shared.stage.stages import Stage, key_of
-from studio.pages import making as view_pages
-from studio.site import making
+from studio import pages as view_pages
+from studio.site import build
 from tools.fixtures import film_fixture
 
 NAME = "four_bar"
@@ -63,8 +63,8 @@ def out(out_root: Path, monkeypatch: pytest.MonkeyPatch) -> Out:
 
     monkeypatch.setattr(freshness, "current_names", set)
     monkeypatch.setattr(view_pages, "run", pages)
-    monkeypatch.setattr(making, "write_machine_page", page)
-    monkeypatch.setattr(making, "_skeleton", lambda out: _film(out.animation("skeleton", ".mp4"), 20))
+    monkeypatch.setattr(build, "write_machine_page", page)
+    monkeypatch.setattr(build, "_skeleton", lambda out: _film(out.animation("skeleton", ".mp4"), 20))
     return out
 
 
@@ -81,15 +81,15 @@ def _solved_again(out: Out) -> None:
 
 def test_what_is_of_the_motion_before_is_left_out_and_named_once(out: Out, capsys: pytest.CaptureFixture[str]) -> None:
     """Report, GLB, film and plates of the machine before were published without a word."""
-    assert making.run([NAME]) == 0
+    assert build.run([NAME]) == 0
     site = out.folder.parent / "site" / NAME
-    assert not capsys.readouterr().err.count("older")
+    assert not capsys.readouterr().err.count("outdated")
     assert _files(out) == ALL
     assert (site / "film.mp4").read_bytes() == out.film("draft").read_bytes()
     before = (site / "picture.jpg").read_bytes()
     _solved_again(out)
-    assert making.run([NAME]) == 0
-    (warning,) = [line for line in capsys.readouterr().err.splitlines() if "older version" in line]
+    assert build.run([NAME]) == 0
+    (warning,) = [line for line in capsys.readouterr().err.splitlines() if "outdated" in line]
     for file in ("report.md", f"{NAME}.glb", f"{NAME}-draft.mp4", "poster.png"):
         assert f"{file} (it is of an older data.json)" in warning
     assert "plate" not in warning
@@ -99,14 +99,14 @@ def test_what_is_of_the_motion_before_is_left_out_and_named_once(out: Out, capsy
     assert (site / "picture.jpg").read_bytes() != before
     report.run(NAME)
     glb.run(NAME)
-    assert making.run([NAME]) == 0
+    assert build.run([NAME]) == 0
     assert _files(out) == ALL
 
 
 def test_plates_of_other_parts_are_left_out(out: Out, capsys: pytest.CaptureFixture[str]) -> None:
     out.parts.write_bytes(out.parts.read_bytes() + b"\n")
     Stage(out, "parts", "l", [out.parts, *out.parts_folder.glob("*.stl")]).record()
-    making.run([NAME])
+    build.run([NAME])
     assert "plate_1.3mf (it is of an older parts.json)" in capsys.readouterr().err
     assert _files(out) == {"mechanism.py", "data.json", f"{NAME}_stl.zip"}
 
@@ -116,16 +116,16 @@ def test_a_machine_whose_files_have_changed_since_is_left_out(
 ) -> None:
     monkeypatch.setattr(freshness, "current_names", lambda names: set())
     with pytest.raises(UserError, match="no machine has a motion to show"):
-        making.run([NAME])
-    assert "its page is of an older version: the machine has changed since it was solved" in capsys.readouterr().err
+        build.run([NAME])
+    assert "its page is outdated: the machine has changed since it was solved" in capsys.readouterr().err
 
 
 def test_archives_have_the_same_bytes_each_time(out: Out) -> None:
-    making.run([NAME])
+    build.run([NAME])
     archive = out.folder.parent / "site" / NAME / "files" / f"{NAME}_stl.zip"
     before = archive.read_bytes()
     for path in out.parts_folder.glob("*.stl"):
         path.touch()
     archive.unlink()
-    making.run([NAME])
+    build.run([NAME])
     assert archive.read_bytes() == before

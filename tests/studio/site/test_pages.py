@@ -8,9 +8,8 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
-from studio.site.designs.leaves import Unlike, form, leaves, thinned, vector
-from studio.site.downloads import Download
-from studio.site.entries import Entry
+from studio.site.designs.vectors import Unlike, form, leaves, thinned, vector
+from studio.site.entries import Download, Entry
 from studio.site.pages import machine, wall
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
-from studio.site.purposes import filters, neighbours, purposes
+from studio.site.entries import filters, neighbours, purposes
 
 
 def motion(*kinds: str) -> Any:

@@ -18,8 +18,8 @@ from mechanisms.four_bar.mechanism import Params, build
 from render.view.bundle import PAGE, node, node_modules
 from shared.stage.errors import Busy, UserError
 from shared.stage.paths import ROOT
-from studio.pages import making as view_pages
-from studio.site import making
+from studio import pages as view_pages
+from studio.site import build as site_build
 from tests.running.needs import needed
 
 pytestmark = pytest.mark.slow
@@ -40,7 +40,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("MBSD_OUT", str(tmp_path_factory.mktemp("site") / "out"))
         patch.setattr(view_pages, "run", _solved)
-        assert making.run(NAMES) == 0
+        assert site_build.run(NAMES) == 0
         yield Path(os.environ["MBSD_OUT"]) / "site"
 
 
@@ -110,25 +110,25 @@ def test_the_files_of_a_machine_are_offered(site: Path) -> None:
 def test_a_second_run_writes_nothing_and_what_is_gone_goes(site: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(view_pages, "run", lambda names: 0)
     before = {path: path.stat().st_mtime_ns for path in site.rglob("*") if path.is_file()}
-    assert making.run(NAMES) == 0
+    assert site_build.run(NAMES) == 0
     assert {path: path.stat().st_mtime_ns for path in site.rglob("*") if path.is_file()} == before
     own = site / "notes"
     own.mkdir()
     (own / "mine.txt").write_text("not made here")
-    assert making.run(["four_bar"]) == 0
+    assert site_build.run(["four_bar"]) == 0
     assert not (site / "trammel").exists()
     assert (own / "mine.txt").is_file()
-    assert making.run(NAMES) == 0
+    assert site_build.run(NAMES) == 0
 
 
 def test_a_machine_without_a_page_is_named_and_left_out(
     site: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(view_pages, "run", lambda names: 1)
-    assert making.run([*NAMES, "pendulum"]) == 1
+    assert site_build.run([*NAMES, "pendulum"]) == 1
     assert "pendulum is left out: it has no page" in capsys.readouterr().err
     with pytest.raises(UserError, match="no machine has a motion"):
-        making.run(["pendulum"])
+        site_build.run(["pendulum"])
 
 
 def test_two_sites_are_not_made_in_one_folder_at_a_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -137,12 +137,12 @@ def test_two_sites_are_not_made_in_one_folder_at_a_time(tmp_path: Path, monkeypa
 
     def meanwhile(names: list[str]) -> int:
         with pytest.raises(Busy, match=r"another process makes .*site; wait for it or stop it") as refused:
-            making.run(["trammel"], folder)
+            site_build.run(["trammel"], folder)
         second.append(refused.value)
         return 1
 
     monkeypatch.setattr(view_pages, "run", meanwhile)
     for _ in range(2):  # the folder is free again after a failure
         with pytest.raises(UserError, match="no machine has a motion"):
-            making.run(["nothing_made"], folder)
+            site_build.run(["nothing_made"], folder)
     assert len(second) == 2

@@ -28,8 +28,7 @@ from matplotlib.transforms import Bbox
 from mbsd.pictures import Picture, Svg
 from shared.stage.paths import ROOT
 from tools.documents.figures import pages
-from tools.documents.figures.dark import dark, name_of
-from tools.documents.figures.dark_gif import dark_gif
+from tools.documents.figures.dark import dark, dark_gif, name_of
 from tools.documents.figures.look import STYLE
 from tools.documents.pages import DOCS, write_changed
 

@@ -1,17 +1,121 @@
-"""Check runs against their records, record them, and compare them with the compiled loop over many simulations."""
+"""Commands on recorded runs: check, record, and compare with one row of the compiled loop."""
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
-from tools.numbers.events import condition
-from tools.numbers.events.case import Case
-from tools.numbers.events.difference import Difference, difference
-from tools.numbers.events.record import FILE, Outcome, Record, read, run, write
+import numpy as np
+
+from mbsd import Mechanism
+from mbsd.base.errors import MechanismError
+from mbsd.measures import final, samples
+from tools.numbers.events.difference import MOST, Difference, bound, difference, moved
+from tools.numbers.events.record import FILE, TOLERANCE, Case, Outcome, Record, Sizes, read, run, write
 from tools.numbers.events.table import cases
+
+# Recorded runs beside one row of the compiled loop over many simulations.
+
+
+PARTS = ("x", "y", "theta", "vx", "vy", "omega")
+IN_LOOP = "loop"
+
+
+class Beside(NamedTuple):
+    """A run beside its row."""
+
+    name: str
+    way: str
+    """"loop", or why it is simulated by itself."""
+    apart: float
+    """Largest difference of all bodies' motion, in parts of its sizes."""
+    within: float
+
+
+def compare(only: str) -> Iterator[Beside]:
+    """Yield runs whose names contain ``only`` beside one row of the loop each; refused runs have no motion."""
+    records = read()
+    for case in cases():
+        record = records[case.name]
+        own = records[record.same_as] if record.same_as else record
+        if only in case.name and own.outcome is not None:
+            yield _compare(case, own.outcome, own.within)
+
+
+def _compare(case: Case, outcome: Outcome, within: float) -> Beside:
+    m, given = case.build(), dict(case.options)
+    rows = given.pop("event_rows", False)
+    times = [moment.t for moment in outcome.between]
+    names = {f"{name}.{part}": (name, part) for name, body in m.bodies.items() if body != m.ground for part in PARTS}
+    steps = int(given.pop("steps", case.steps))
+    measure = {name: final(name) for name in names} | {"work": final("work")}
+    grid = np.linspace(0.0, case.duration, steps + 1)
+    if times and outcome.end is not None and outcome.end.t == case.duration:
+        grid = np.unique(np.concatenate([grid, times]))
+        measure |= {f"{name} between": samples(name, times) for name in names}
+    try:
+        with warnings.catch_warnings(action="ignore"):
+            many = m.simulate_many(
+                times=grid, vary=_same(m), measure=measure, threads=1, **{"tolerance": TOLERANCE, **given}
+            )
+    except MechanismError as error:
+        return Beside(case.name, "refused before any row", 0.0 if str(error) == outcome.text else math.inf, within)
+    way = many.alone[0] or IN_LOOP
+    if rows:
+        way += " (without rows beside events)"
+    if outcome.error or many.reason[0] is not None:
+        same = bool(outcome.error) and many.reason[0] is not None and outcome.text in str(many.reason[0])
+        return Beside(case.name, way, 0.0 if same else math.inf, within)
+    assert outcome.sizes is not None
+    assert outcome.end is not None
+    apart = abs(float(many["work"][0]) - outcome.work) / outcome.sizes.energy
+    alone = _places(case, times)
+    for name, (body, part) in names.items():
+        scale = _scale(outcome.sizes, part)
+        ends, between = alone[body, part]
+        apart = max(apart, abs(float(many[name][0]) - ends) / scale)
+        if f"{name} between" in measure:
+            apart = max(apart, float(np.abs(many[f"{name} between"][0] - between).max(initial=0.0)) / scale)
+    return Beside(case.name, way, apart, within)
+
+
+def _places(case: Case, times: list[float]) -> dict[tuple[str, str], tuple[float, np.ndarray]]:
+    """Parts of bodies' motion at the end and between events, by a single simulation."""
+    sol = case.simulate()
+    after = sol.at(times) if times else sol
+    return {
+        (name, part): (float(getattr(sol.body(name), part)[-1]), np.asarray(getattr(after.body(name), part)))
+        for name in sol.mechanism.bodies
+        for part in PARTS
+    }
+
+
+def _scale(sizes: Sizes, part: str) -> float:
+    places, rates = sizes.of_bodies()
+    return (places + rates)[PARTS.index(part)]
+
+
+def _same(m: Mechanism) -> dict[str, dict[str, list[float]]]:
+    """A number that varies over one row, as it is: a mass, else a number of a contact."""
+    for name, body in m.bodies.items():
+        if body.mass:
+            return {name: {"mass": [body.mass]}}
+    raise ValueError(f"{m.name} has no mass")
+
+
+def show(only: str) -> None:
+    """Print a table of all, a line as soon as it is known."""
+    print("| run | way | difference | bound |\n|---|---|--:|--:|")
+    for each in compare(only):
+        print(f"| {each.name} | {each.way} | {each.apart:.1e} | {each.within:.0e} |", flush=True)
+
+
+# Check runs against their records, record them, and compare them with the compiled loop over many simulations.
+
 
 AT_ONCE = 25
 """Runs after which what is recorded is written."""
@@ -102,16 +206,16 @@ def _record(case: Case, known: dict[str, Record]) -> tuple[Record, str]:
     if outcome.error or case.refused:
         unsaid = [word for word in case.refused if word not in outcome.text]
         return Record(case.name, outcome=outcome), f"it says {outcome.text!r}" if unsaid or not case.refused else ""
-    moved = condition.moved(case, outcome)
-    name, most = max(moved, key=lambda each: max(each[1].motion, each[1].forces))
-    motion, forces = max(each.motion for _, each in moved), max(each.forces for _, each in moved)
+    nudged = moved(case, outcome)
+    name, most = max(nudged, key=lambda each: max(each[1].motion, each[1].forces))
+    motion, forces = max(each.motion for _, each in nudged), max(each.forces for _, each in nudged)
     farthest = max(motion, forces)
     if not math.isfinite(farthest):
         return Record(case.name, outcome=outcome), f"{name}: {most.where}"
-    within, forces_within = condition.bound(motion), condition.bound(forces)
+    within, forces_within = bound(motion), bound(forces)
     reason = f"moving {name} moves it by {farthest:.0e}: {case.kink}" if max(within, forces_within) > 1e-9 else ""
     made = Record(case.name, "", outcome, within, forces_within, float(f"{farthest:.2g}"), reason)
-    if farthest > condition.MOST:
+    if farthest > MOST:
         return made, f"it moves by {farthest:.0e}, {name}: {most.where}; shorten it"
     return made, "" if case.kink or not reason else f"it moves by {farthest:.0e}, {name}, and no reason is given"
 

@@ -11,7 +11,7 @@ import numpy as np
 from mbsd import Mechanism, constant_rate, harmonic, polynomial
 from tools.models import contact_models, rough_contacts, stops
 from tools.models.contact_models import G
-from tools.numbers.events.case import Case
+from tools.numbers.events.record import Case
 
 ZENO = "many bounces: each divides the speed, and so multiplies errors of its time"
 KINKS = "friction has kinks where sliding begins and ends"

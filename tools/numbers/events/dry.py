@@ -8,8 +8,9 @@ from functools import partial
 from random import Random
 
 from mbsd import Mechanism, constant_rate, polynomial
-from tools.models import random_rough, rough, sticking
-from tools.numbers.events.case import Case
+from tools.models import rough, sticking
+from tools.numbers.events.record import Case
+from tools.random_mechanisms import rough as random_rough
 
 KINKS = "friction has kinks where joints stick and slide"
 SHARED = "joints that share a load give way together, at kinks of what each carries"

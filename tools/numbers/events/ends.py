@@ -9,7 +9,7 @@ from functools import partial
 from mbsd import Mechanism, function, harmonic
 from tools.models import sticking, stops
 from tools.models.contact_models import G
-from tools.numbers.events.case import Case
+from tools.numbers.events.record import Case
 
 REBOUNDS = "many rebounds: each divides the speed, and so multiplies errors of its time"
 CHAOS = "rebounds between two ends multiply small differences"

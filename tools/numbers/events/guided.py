@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from functools import partial
 
 from mbsd import Mechanism
-from tools.models import guided, repeated_joints
+from tools.models import guided, releases
 from tools.models.engines import petrol, slider_crank
-from tools.numbers.events.case import Case
+from tools.numbers.events.record import Case
 
 FREE = ("independent", "reference")
 JUMPS = "the acceleration jumps where a pin enters and leaves its slot"
@@ -60,15 +60,13 @@ def _curves() -> Iterator[Case]:
 def _repeated() -> Iterator[Case]:
     for formulation in ("auto", "reference"):
         options = {"formulation": formulation}
-        yield Case(f"three cranks turn, {formulation}", lambda: repeated_joints.cranks(12.0), 0.93, options, kink=FLAT)
+        yield Case(f"three cranks turn, {formulation}", lambda: releases.cranks(12.0), 0.93, options, kink=FLAT)
     yield Case("three cranks with stops", _thrown_cranks, 1.03, kink=CHAOS, quick=True)
-    yield Case("three cranks that turn into stops", lambda: repeated_joints.cranks(9.0, True), 0.73, kink=FLAT)
-    yield Case(
-        "three cranks and a motor", lambda: repeated_joints.cranks(motor=True), 0.33, {"tolerance": 1e-12}, kink=FLAT
-    )
-    yield Case("three dry cranks", lambda: repeated_joints.dry(False), 0.63, kink=FLAT)
+    yield Case("three cranks that turn into stops", lambda: releases.cranks(9.0, True), 0.73, kink=FLAT)
+    yield Case("three cranks and a motor", lambda: releases.cranks(motor=True), 0.33, {"tolerance": 1e-12}, kink=FLAT)
+    yield Case("three dry cranks", lambda: releases.dry(False), 0.63, kink=FLAT)
     yield Case("three cranks that stick", _thrown_dry_cranks, 1.03, kink=FLAT)
-    yield Case("door with two hinges", repeated_joints.doors, 0.93)
+    yield Case("door with two hinges", releases.doors, 0.93)
     yield Case("door with two hinges and a stop", _stopped_door, 0.93, kink=CHAOS)
 
 
@@ -105,19 +103,19 @@ def _hung(m: Mechanism) -> Mechanism:
 
 
 def _thrown_cranks() -> Mechanism:
-    m = repeated_joints.cranks(stops=True)
+    m = releases.cranks(stops=True)
     m.start_moving(crank0=5.0)
     return m
 
 
 def _thrown_dry_cranks() -> Mechanism:
-    m = repeated_joints.dry(True)
+    m = releases.dry(True)
     m.start_moving(crank0=4.0)
     return m
 
 
 def _stopped_door() -> Mechanism:
-    m = repeated_joints.doors()
+    m = releases.doors()
     m.stop("end", "hinge", lower=-0.9, restitution=0.3)
     return m
 

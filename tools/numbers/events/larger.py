@@ -6,10 +6,10 @@ import math
 from collections.abc import Iterator
 
 from mbsd import Mechanism, angle_reaches, constant_rate
-from tools.models import contact_models, repeated_joints, stops
+from tools.models import contact_models, releases, stops
 from tools.models.contact_models import G
 from tools.numbers.events import contacts
-from tools.numbers.events.case import Case
+from tools.numbers.events.record import Case
 
 CHAOS = "impacts multiply small differences"
 STIFF = "oil is stiff, and the method's error at stops is larger"
@@ -108,7 +108,7 @@ def long_chain() -> Mechanism:
 
 def row_with_a_stop() -> Mechanism:
     """Cranks that repeat each other, one of which meets a stop."""
-    m = repeated_joints.row_of_cranks(18)
+    m = releases.row_of_cranks(18)
     m.stop("end", "A0", upper=-0.6, restitution=0.3)
     m.event("quarter", angle_reaches(m.bodies["crank3"], -0.8))
     clock = m.body("clock", 1.0, inertia=1.0)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from mbsd import Mechanism, angle_reaches
 from tools.models import contact_models, guided, rough_contacts, sticking, stops, user_events
-from tools.numbers.events.case import Case
+from tools.numbers.events.record import Case
 
 
 def cases() -> Iterator[Case]:

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import mbsd.dynamics.integrators
 from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
 from tools.numbers.events import contacts, dry, ends, guided, larger, refused, users
-from tools.numbers.events.case import Case
+from tools.numbers.events.record import Case
 
 TABLES = (contacts, ends, dry, guided, users, larger, refused)
 SMOOTH = (

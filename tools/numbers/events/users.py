@@ -9,9 +9,9 @@ from functools import partial
 import numba
 
 from mbsd import Mechanism, angle_reaches, distance_reaches, speed_reaches
-from tools.models import contact_models, releases, repeated_joints, sticking, stops, user_events
+from tools.models import contact_models, releases, sticking, stops, user_events
 from tools.models.contact_models import G
-from tools.numbers.events.case import Case
+from tools.numbers.events.record import Case
 
 CHAOS = "impacts and actions multiply small differences"
 KINKS = "friction has kinks where joints stick and slide"
@@ -85,10 +85,10 @@ def _releases() -> Iterator[Case]:
         "dry chain that breaks": (releases.dry_chain, 1.03),
         "shelf": (releases.held_up, 0.93),
         "twin hinges": (releases.twin_hinges, 0.93),
-        "three cranks that break": (lambda: releases.broken_cranks(repeated_joints.cranks()), 0.93),
-        "three cranks that break, stops": (lambda: releases.broken_cranks(repeated_joints.cranks(stops=True)), 0.73),
-        "three cranks that break, dry": (lambda: releases.broken_cranks(repeated_joints.dry(False)), 0.73),
-        "three cranks that break, stick": (lambda: releases.broken_cranks(repeated_joints.dry(True)), 0.73),
+        "three cranks that break": (lambda: releases.broken_cranks(releases.cranks()), 0.93),
+        "three cranks that break, stops": (lambda: releases.broken_cranks(releases.cranks(stops=True)), 0.73),
+        "three cranks that break, dry": (lambda: releases.broken_cranks(releases.dry(False)), 0.73),
+        "three cranks that break, stick": (lambda: releases.broken_cranks(releases.dry(True)), 0.73),
         "motor that lets go": (releases.motor_and_cranks, 0.93),
         "bar that keeps its speed": (loose_bar, 1.53),
     }
@@ -232,11 +232,7 @@ def stays_zero() -> Mechanism:
     m = Mechanism("loose", gravity=(0, -G))
     arm = m.bar("arm", 1.0, mass=1.0)
     m.revolute("hinge", m.ground.at(0, 0), arm.start)
-    m.event(
-        "gone",
-        lambda t, moment: moment.body("arm").omega + 3.0,
-        action=lambda moment: moment.release("hinge"),
-    )
+    m.event("gone", lambda t, moment: moment.body("arm").omega + 3.0, action=lambda moment: moment.release("hinge"))
     m.start_near(arm=0)
     return m
 

@@ -62,9 +62,9 @@ from mbsd.dynamics.formulation import along, respond
 from mbsd.dynamics.reference.schur import factor_schur
 from mbsd.dynamics.reference.sliding import begin_sliding, slide
 from mbsd.equations.assembly import evaluate_gamma, evaluate_position
-from mbsd.equations.gauss import eliminate
 from mbsd.equations.joint_friction import PIN, PRELOAD, SHAPE, SIZE, STATIC, apply_friction, normal_forces
 from mbsd.equations.laws import evaluate_laws
+from mbsd.equations.products import eliminate
 
 PASSES = 100
 """Passes in which joints at rest agree on how they share their friction, at most."""

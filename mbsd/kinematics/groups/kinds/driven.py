@@ -9,7 +9,8 @@ import math
 
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import internal, merged
-from mbsd.kinematics.groups.carrying.cases import (
+from mbsd.kinematics.groups.carried import COS, OMEGA, SIN, SOLVED, X, Y
+from mbsd.kinematics.groups.cases import (
     AlongLaws,
     PerCoordinate,
     PoseAlone,
@@ -18,18 +19,14 @@ from mbsd.kinematics.groups.carrying.cases import (
     speed_of,
     value_of,
 )
-from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIN, X, Y
-from mbsd.kinematics.groups.carrying.rates import SOLVED
-from mbsd.kinematics.groups.groups import COORDINATE, DRIVEN, FIRST, K1, K2, LAW
-from mbsd.kinematics.groups.kind import GroupKind, Made
-from mbsd.kinematics.groups.links import Link, Places
+from mbsd.kinematics.groups.groups import COORDINATE, DRIVEN, FIRST, K1, K2, LAW, GroupKind, Link, Made, Places
 
 P1_X, P1_Y, PA_X, PA_Y, OFFSET, SENSE = range(6)
 """P on K1, P on A; constant of the driver (rad), s."""
 
 
 def driven(at: Places, body: int, links: dict[str, Link]) -> Made:
-    """A body with a pin and a driver of its angle."""
+    """Return a body with a pin and a driver of its angle."""
     pin, drive = links["R"], links["D"]
     sense = -1.0 if drive.first else 1.0
     return DRIVEN, (body, -1, pin.other, drive.other), drive.motion, [*at.pin(pin), drive.offset, sense]

@@ -10,13 +10,21 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turn_as, turned_x, turned_y
-from mbsd.kinematics.groups.carrying.cases import columns_of, formula, note_change, reached, speed_of
-from mbsd.kinematics.groups.carrying.columns import OMEGA, SINE, X, Y
-from mbsd.kinematics.groups.carrying.rates import SOLVED
-from mbsd.kinematics.groups.groups import FIRST, K1, K2, PRP, SECOND
-from mbsd.kinematics.groups.kind import GroupKind, Made
-from mbsd.kinematics.groups.links import Link, Places
+from mbsd.kinematics.groups.carried import (
+    OMEGA,
+    SINE,
+    SOLVED,
+    X,
+    Y,
+    carry_column,
+    hang_column,
+    place_by_point,
+    turn_as,
+    turned_x,
+    turned_y,
+)
+from mbsd.kinematics.groups.cases import columns_of, formula, note_change, reached, speed_of
+from mbsd.kinematics.groups.groups import FIRST, K1, K2, PRP, SECOND, GroupKind, Link, Made, Places
 
 C1_X, C1_Y, E1_X, E1_Y, ANGLE_A, CA_X, CA_Y, C2_X, C2_Y, E2_X, E2_Y, ANGLE_B, CB_X, CB_Y = range(14)
 """C_1 and e_1 on K1, angle of A against K1, C on A; C_2 and e_2 on K2, angle of B against K2, C on B."""
@@ -29,7 +37,7 @@ NEARLY_PARALLEL = 1e-3
 
 
 def in_slot(at: Places, a: int, links: dict[str, Link]) -> Made | None:
-    """A sliding body whose point runs in a slot of a known one."""
+    """Return a sliding body whose point runs in a slot of a known one."""
     slide, slot = links["P"], links["S"]
     if slot.first:
         return None
@@ -39,7 +47,7 @@ def in_slot(at: Places, a: int, links: dict[str, Link]) -> Made | None:
 
 
 def two_slides(at: Places, a: int, b: int, slide: Link, inner: Link, second: Link) -> Made:
-    """Two sliding bodies pinned to each other."""
+    """Return two sliding bodies pinned to each other."""
     arm = at.arm(inner.there)
     return _made(at, a, b, slide, at.arm(inner.here), second.other, [*at.on_slide(second, arm), *arm])
 
@@ -71,7 +79,7 @@ KIND = GroupKind(
 def solve_prp(case, e):
     """Place the bodies of group e and fill their rates; return SOLVED, or why not.
 
-    ``case`` says what for: a record of carrying/cases.py, with the tables of all groups and bodies. ``body`` takes
+    ``case`` says what for: a record of cases.py, with the tables of all groups and bodies. ``body`` takes
     poses and ``rate`` the rates for each column, of which the last are accelerations. ``number[e, SINE]`` takes the
     squared sine that vanishes where the two poses of the group meet.
     """
@@ -109,15 +117,15 @@ def solve_prp(case, e):
     turn_as(body, a, k1, n[COS_A], n[SIN_A])
     tx = body[k1, X] + px
     ty = body[k1, Y] + py
-    ax = put(body, a, tx, ty, n[CA_X], n[CA_Y], 0)
-    ay = put(body, a, tx, ty, n[CA_X], n[CA_Y], 1)
+    ax = place_by_point(body, a, tx, ty, n[CA_X], n[CA_Y], 0)
+    ay = place_by_point(body, a, tx, ty, n[CA_X], n[CA_Y], 1)
     body[a, OMEGA] = body[k1, OMEGA]
     bx = 0.0
     by = 0.0
     if b >= 0:
         turn_as(body, b, k2, n[COS_B], n[SIN_B])
-        bx = put(body, b, tx, ty, n[CB_X], n[CB_Y], 0)
-        by = put(body, b, tx, ty, n[CB_X], n[CB_Y], 1)
+        bx = place_by_point(body, b, tx, ty, n[CB_X], n[CB_Y], 0)
+        by = place_by_point(body, b, tx, ty, n[CB_X], n[CB_Y], 1)
         body[b, OMEGA] = body[k2, OMEGA]
     note_change(case, n, 2.0 * sine * (fx * ex + fy * ey) * (body[k1, OMEGA] - body[k2, OMEGA]))
     slip1 = 0.0

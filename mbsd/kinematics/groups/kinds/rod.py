@@ -12,8 +12,22 @@ import math
 
 import numpy as np
 
-from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turned_x, turned_y
-from mbsd.kinematics.groups.carrying.cases import (
+from mbsd.kinematics.groups.carried import (
+    COS,
+    DOUBTED,
+    OMEGA,
+    SIN,
+    SINE,
+    SOLVED,
+    X,
+    Y,
+    carry_column,
+    hang_column,
+    place_by_point,
+    turned_x,
+    turned_y,
+)
+from mbsd.kinematics.groups.cases import (
     branch_of,
     columns_of,
     formula,
@@ -23,11 +37,7 @@ from mbsd.kinematics.groups.carrying.cases import (
     speed_of,
     value_of,
 )
-from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIN, SINE, X, Y
-from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
-from mbsd.kinematics.groups.groups import FIRST, K1, K2, LAW, ROD
-from mbsd.kinematics.groups.kind import GroupKind, Made, line
-from mbsd.kinematics.groups.links import Link, Places
+from mbsd.kinematics.groups.groups import FIRST, K1, K2, LAW, ROD, GroupKind, Link, Made, Places, line
 
 P1_X, P1_Y, PA_X, PA_Y, CA_X, CA_Y, Q2_X, Q2_Y, LENGTH, BRANCH = range(10)
 """P on K1, P on A, C on A, Q on K2, constant length beside the law's, sign of the root."""
@@ -36,7 +46,7 @@ UA_X, UA_Y, SQUARE = CA_X, CA_Y, BRANCH
 
 
 def rod(at: Places, a: int, links: dict[str, Link]) -> Made:
-    """A pinned body held by a rod or an actuator."""
+    """Return a pinned body held by a rod or an actuator."""
     pin, held = links["R"], links["L"]
     numbers = [*at.pin(pin), *at.arm(held.here), *at.arm(held.there), held.offset]
     p, q = at.world(a, numbers[PA_X:CA_X]), at.world(held.other, numbers[Q2_X:LENGTH])
@@ -92,8 +102,8 @@ def solve_rod(case, e):
     wy = uy - dy
     body[a, COS] = ux * n[UA_X] + uy * n[UA_Y]
     body[a, SIN] = uy * n[UA_X] - ux * n[UA_Y]
-    ax = put(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
-    ay = put(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
+    ax = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
+    ay = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
     lever = 1.0 / (wy * ux - wx * uy)
     turning = 0.0
     past_x = 0.0

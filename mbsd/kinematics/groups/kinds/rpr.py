@@ -13,8 +13,24 @@ import math
 
 import numpy as np
 
-from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turn_as, turned_x, turned_y
-from mbsd.kinematics.groups.carrying.cases import (
+from mbsd.kinematics.groups.carried import (
+    COS,
+    DOUBTED,
+    MEETING,
+    OMEGA,
+    SIN,
+    SINE,
+    SOLVED,
+    X,
+    Y,
+    carry_column,
+    hang_column,
+    place_by_point,
+    turn_as,
+    turned_x,
+    turned_y,
+)
+from mbsd.kinematics.groups.cases import (
     branch_of,
     columns_of,
     formula,
@@ -23,11 +39,21 @@ from mbsd.kinematics.groups.carrying.cases import (
     speed_of,
     too_short,
 )
-from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIN, SINE, X, Y
-from mbsd.kinematics.groups.carrying.rates import DOUBTED, MEETING, SOLVED
-from mbsd.kinematics.groups.groups import FIRST, K1, K2, RPR, SECOND
-from mbsd.kinematics.groups.kind import Bodies, GroupKind, Made
-from mbsd.kinematics.groups.links import Link, Places, Vector, own_angle, turned
+from mbsd.kinematics.groups.groups import (
+    FIRST,
+    K1,
+    K2,
+    RPR,
+    SECOND,
+    Bodies,
+    GroupKind,
+    Link,
+    Made,
+    Places,
+    Vector,
+    own_angle,
+    turned,
+)
 
 P1_X, P1_Y, PA_X, PA_Y, E_X, E_Y, OFFSET, Q2_X, Q2_Y, ANGLE, QB_X, QB_Y, BRANCH = range(13)
 """P on K1, P on A, e on A, offset of Q from it, Q on K2, angle of B against A, Q on B, sign of the root."""
@@ -36,7 +62,7 @@ COS_B, SIN_B = ANGLE, BRANCH
 
 
 def in_own_slot(at: Places, a: int, links: dict[str, Link]) -> Made | None:
-    """A pinned body in whose slot a point of a known one runs."""
+    """Return a pinned body in whose slot a point of a known one runs."""
     pin, slot = links["R"], links["S"]
     if not slot.first:
         return None
@@ -47,7 +73,7 @@ def in_own_slot(at: Places, a: int, links: dict[str, Link]) -> Made | None:
 
 
 def on_each_other(at: Places, a: int, b: int, pin: Link, slide: Link, outer: Link) -> Made:
-    """Two pinned bodies of which one slides on the other."""
+    """Return two pinned bodies of which one slides on the other."""
     angle = -own_angle(slide)
     axis = at.axis(slide.here) if slide.first else turned(at.axis(slide.there), angle)
     q_on_b = at.arm(outer.here)
@@ -133,14 +159,14 @@ def solve_rpr(case, e):
     ey = (root * dy - n[OFFSET] * dx) * inverse
     body[a, COS] = ex * n[E_X] + ey * n[E_Y]
     body[a, SIN] = ey * n[E_X] - ex * n[E_Y]
-    ax = put(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
-    ay = put(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
+    ax = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
+    ay = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
     bx = 0.0
     by = 0.0
     if b >= 0:
         turn_as(body, b, a, n[COS_B], n[SIN_B])
-        bx = put(body, b, tx, ty, n[QB_X], n[QB_Y], 0)
-        by = put(body, b, tx, ty, n[QB_X], n[QB_Y], 1)
+        bx = place_by_point(body, b, tx, ty, n[QB_X], n[QB_Y], 0)
+        by = place_by_point(body, b, tx, ty, n[QB_X], n[QB_Y], 1)
     inverse = 1.0 / root
     turning = 0.0
     sliding = 0.0

@@ -13,8 +13,23 @@ import math
 
 import numpy as np
 
-from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turn_as, turned_x, turned_y
-from mbsd.kinematics.groups.carrying.cases import (
+from mbsd.kinematics.groups.carried import (
+    COS,
+    DOUBTED,
+    OMEGA,
+    SIN,
+    SINE,
+    SOLVED,
+    X,
+    Y,
+    carry_column,
+    hang_column,
+    place_by_point,
+    turn_as,
+    turned_x,
+    turned_y,
+)
+from mbsd.kinematics.groups.cases import (
     branch_of,
     columns_of,
     formula,
@@ -22,11 +37,7 @@ from mbsd.kinematics.groups.carrying.cases import (
     reached,
     speed_of,
 )
-from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIN, SINE, X, Y
-from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
-from mbsd.kinematics.groups.groups import FIRST, K1, K2, RRP, SECOND
-from mbsd.kinematics.groups.kind import Bodies, GroupKind, Made, line
-from mbsd.kinematics.groups.links import Link, Places
+from mbsd.kinematics.groups.groups import FIRST, K1, K2, RRP, SECOND, Bodies, GroupKind, Link, Made, Places, line
 
 P1_X, P1_Y, PA_X, PA_Y, CA_X, CA_Y, C2_X, C2_Y, E_X, E_Y, ANGLE, CB_X, CB_Y, BRANCH = range(14)
 """P on K1, P on A, C on A, C_0 and e on K2, angle of B against K2, C on B, sign of the root."""
@@ -35,7 +46,7 @@ UA_X, UA_Y, COS_B, SIN_B, SQUARE, PER_SQUARE = CA_X, CA_Y, ANGLE, BRANCH, 14, 15
 
 
 def in_slot(at: Places, a: int, links: dict[str, Link]) -> Made | None:
-    """A pinned body whose point runs in a slot of a known one."""
+    """Return a pinned body whose point runs in a slot of a known one."""
     pin, slot = links["R"], links["S"]
     if slot.first:
         return None
@@ -44,7 +55,7 @@ def in_slot(at: Places, a: int, links: dict[str, Link]) -> Made | None:
 
 
 def on_slide(at: Places, a: int, b: int, pin: Link, inner: Link, slide: Link) -> Made:
-    """A pinned body, pinned to one that slides."""
+    """Return a pinned body, pinned to one that slides."""
     arm = at.arm(inner.there)
     return _made(at, (a, b, pin.other, slide.other), pin, at.arm(inner.here), at.on_slide(slide, arm), arm)
 
@@ -120,14 +131,14 @@ def solve_rrp(case, e):
     ty = body[k2, Y] + sy
     cx = body[k1, X] + px
     cy = body[k1, Y] + py
-    ax = put(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
-    ay = put(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
+    ax = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
+    ay = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
     bx = 0.0
     by = 0.0
     if b >= 0:
         turn_as(body, b, k2, n[COS_B], n[SIN_B])
-        bx = put(body, b, tx, ty, n[CB_X], n[CB_Y], 0)
-        by = put(body, b, tx, ty, n[CB_X], n[CB_Y], 1)
+        bx = place_by_point(body, b, tx, ty, n[CB_X], n[CB_Y], 0)
+        by = place_by_point(body, b, tx, ty, n[CB_X], n[CB_Y], 1)
         body[b, OMEGA] = body[k2, OMEGA]
     inverse = 1.0 / root
     turning = 0.0
@@ -143,9 +154,8 @@ def solve_rrp(case, e):
             body[a, OMEGA] = turning
             spin = body[k2, OMEGA]
             note_change(case, n, -2.0 * across * (fx * ey - fy * ex + spin * root) * n[PER_SQUARE])
-            twice = 2.0 * spin * sliding
-            tx -= twice * ey
-            ty += twice * ex
+            tx -= 2.0 * spin * sliding * ey
+            ty += 2.0 * spin * sliding * ex
         fx = tx - cx
         fy = ty - cy
         if j == columns:

@@ -16,18 +16,27 @@ import math
 import numpy as np
 
 from mbsd.compiling.jit import merged
-from mbsd.kinematics.groups.carrying.cases import (
+from mbsd.kinematics.groups.carried import (
+    COS,
+    DOUBTED,
+    OMEGA,
+    SIN,
+    SINE,
+    SOLVED,
+    X,
+    Y,
+    place_by_point,
+    turned_x,
+    turned_y,
+)
+from mbsd.kinematics.groups.cases import (
     branch_of,
     columns_of,
     note_change,
     reached,
     speed_of,
 )
-from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIN, SINE, X, Y
-from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
-from mbsd.kinematics.groups.groups import FIRST, K1, K2, RRR, SECOND
-from mbsd.kinematics.groups.kind import GroupKind, Made, line
-from mbsd.kinematics.groups.links import Link, Places
+from mbsd.kinematics.groups.groups import FIRST, K1, K2, RRR, SECOND, GroupKind, Link, Made, Places, line
 
 P1_X, P1_Y, PA_X, PA_Y, CA_X, CA_Y, Q2_X, Q2_Y, QB_X, QB_Y, CB_X, CB_Y, BRANCH = range(13)
 """P on K1, P on A, C on A, Q on K2, Q on B, C on B, sign of the root."""
@@ -37,7 +46,7 @@ SQUARE, DIFFERENCE, PER_SQUARES = range(12, 15)
 
 
 def two_pinned(at: Places, a: int, b: int, outer_a: Link, inner: Link, outer_b: Link) -> Made:
-    """Two bodies pinned to known ones and to each other."""
+    """Return two bodies pinned to known ones and to each other."""
     numbers = [
         *at.pin(outer_a),
         *at.arm(inner.here),
@@ -60,24 +69,22 @@ KIND = GroupKind(RRR, "RRR", _row, two=("RRR",), of_two=two_pinned, branch=BRANC
 
 @merged
 def solve_rrr(case, e):
-    """Place the bodies of group e and fill their rates. See prp.solve_prp."""
+    """Place the bodies of group e and fill their rates. See prp.solve_prp.
+
+    The rates are written out in full, as no other group is as common.
+    """
     bodies = case.group[e]
     n = case.number[e]
     body = case.body
-    rate = case.rate
     a = bodies[FIRST]
     b = bodies[SECOND]
     k1 = bodies[K1]
     k2 = bodies[K2]
     columns = columns_of(case)
-    c = body[k1, COS]
-    s = body[k1, SIN]
-    px = c * n[P1_X] - s * n[P1_Y]
-    py = s * n[P1_X] + c * n[P1_Y]
-    c = body[k2, COS]
-    s = body[k2, SIN]
-    qx = c * n[Q2_X] - s * n[Q2_Y]
-    qy = s * n[Q2_X] + c * n[Q2_Y]
+    px = turned_x(body, k1, n[P1_X], n[P1_Y])
+    py = turned_y(body, k1, n[P1_X], n[P1_Y])
+    qx = turned_x(body, k2, n[Q2_X], n[Q2_Y])
+    qy = turned_y(body, k2, n[Q2_X], n[Q2_Y])
     cx = body[k1, X] + px
     cy = body[k1, Y] + py
     ex = body[k2, X] + qx
@@ -104,24 +111,36 @@ def solve_rrr(case, e):
     uy = along * dy + cross * dx
     wx = ux - dx
     wy = uy - dy
-    c = ux * n[UA_X] + uy * n[UA_Y]
-    s = uy * n[UA_X] - ux * n[UA_Y]
-    body[a, COS] = c
-    body[a, SIN] = s
-    ax = c * n[PA_X] - s * n[PA_Y]
-    ay = s * n[PA_X] + c * n[PA_Y]
-    body[a, X] = cx - ax
-    body[a, Y] = cy - ay
-    c = wx * n[WB_X] + wy * n[WB_Y]
-    s = wy * n[WB_X] - wx * n[WB_Y]
-    body[b, COS] = c
-    body[b, SIN] = s
-    bx = c * n[QB_X] - s * n[QB_Y]
-    by = s * n[QB_X] + c * n[QB_Y]
-    body[b, X] = ex - bx
-    body[b, Y] = ey - by
-    if columns < 0:
-        return SOLVED
+    body[a, COS] = ux * n[UA_X] + uy * n[UA_Y]
+    body[a, SIN] = uy * n[UA_X] - ux * n[UA_Y]
+    ax = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
+    ay = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
+    body[b, COS] = wx * n[WB_X] + wy * n[WB_Y]
+    body[b, SIN] = wy * n[WB_X] - wx * n[WB_Y]
+    bx = place_by_point(body, b, ex, ey, n[QB_X], n[QB_Y], 0)
+    by = place_by_point(body, b, ex, ey, n[QB_X], n[QB_Y], 1)
+    if columns >= 0:
+        fx, fy = rates_of_rrr(case, bodies, columns, (px, py, qx, qy), (ax, ay, bx, by), (ux, uy, wx, wy, det))
+        note_change(case, n, 2.0 * (n[SQUARE] - half) * (dx * fx + dy * fy) * n[PER_SQUARES])
+    return SOLVED
+
+
+@merged
+def rates_of_rrr(case, bodies, columns, places, arms, links):
+    """Fill the rates of both bodies; return q' - p' (x and y) in the last column before accelerations.
+
+    ``places``: P and Q from the centres of K1 and K2. ``arms``: P from the centre of A, Q from that of B. ``links``: u,
+    w and 1 / (u x w). All are x and y in world axes (m).
+    """
+    body = case.body
+    rate = case.rate
+    a = bodies[FIRST]
+    b = bodies[SECOND]
+    k1 = bodies[K1]
+    k2 = bodies[K2]
+    px, py, qx, qy = places
+    ax, ay, bx, by = arms
+    ux, uy, wx, wy, det = links
     turning_a = 0.0
     turning_b = 0.0
     fx = 0.0
@@ -146,7 +165,7 @@ def solve_rrr(case, e):
         rate[b, at] = ex + omega * by
         rate[b, at + 1] = ey - omega * bx
         rate[b, at + 2] = omega
-    note_change(case, n, 2.0 * (n[SQUARE] - half) * (dx * fx + dy * fy) * n[PER_SQUARES])
+    parting = fx, fy
     body[a, OMEGA] = turning_a
     body[b, OMEGA] = turning_b
     turning_a *= turning_a
@@ -170,4 +189,4 @@ def solve_rrr(case, e):
     rate[b, at] = ex + omega * by + turning_b * bx
     rate[b, at + 1] = ey - omega * bx + turning_b * by
     rate[b, at + 2] = omega
-    return SOLVED
+    return parting

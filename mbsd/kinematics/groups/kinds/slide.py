@@ -9,13 +9,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turn_as, turned_x, turned_y
-from mbsd.kinematics.groups.carrying.cases import columns_of, formula, law_rate, speed_of, value_of
-from mbsd.kinematics.groups.carrying.columns import OMEGA, X, Y
-from mbsd.kinematics.groups.carrying.rates import SOLVED
-from mbsd.kinematics.groups.groups import COORDINATE, FIRST, K1, LAW, SLIDE
-from mbsd.kinematics.groups.kind import GroupKind, Made
-from mbsd.kinematics.groups.links import Link, Places, turned
+from mbsd.kinematics.groups.carried import (
+    OMEGA,
+    SOLVED,
+    X,
+    Y,
+    carry_column,
+    hang_column,
+    place_by_point,
+    turn_as,
+    turned_x,
+    turned_y,
+)
+from mbsd.kinematics.groups.cases import columns_of, formula, law_rate, speed_of, value_of
+from mbsd.kinematics.groups.groups import COORDINATE, FIRST, K1, LAW, SLIDE, GroupKind, Link, Made, Places, turned
 
 S1_X, S1_Y, G_X, G_Y, ANGLE, SA_X, SA_Y = range(7)
 """S_0 on K1, g there, which is the way for each unit of the law, angle of A against K1, S on A."""
@@ -26,7 +33,7 @@ ACROSS = 1e-9
 
 
 def driven_slide(at: Places, a: int, links: dict[str, Link]) -> Made | None:
-    """A sliding body whose way along the slide is driven."""
+    """Return a sliding body whose way along the slide is driven."""
     slide, drive = links["P"], links["A"]
     if drive.other != slide.other:
         return None
@@ -68,8 +75,8 @@ def solve_slide(case, e):
     turn_as(body, a, k1, n[COS_A], n[SIN_A])
     cx = body[k1, X] + px
     cy = body[k1, Y] + py
-    ax = put(body, a, cx, cy, n[SA_X], n[SA_Y], 0)
-    ay = put(body, a, cx, cy, n[SA_X], n[SA_Y], 1)
+    ax = place_by_point(body, a, cx, cy, n[SA_X], n[SA_Y], 0)
+    ay = place_by_point(body, a, cx, cy, n[SA_X], n[SA_Y], 1)
     body[a, OMEGA] = body[k1, OMEGA]
     sliding = 0.0
     for j in range(columns + 1):

@@ -6,13 +6,24 @@ import math
 
 from mbsd.compiling.jit import lazy
 from mbsd.kinematics.groups.blocks import TRAIN
-from mbsd.kinematics.groups.carrying.branch import angle_of, predicted
-from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turned_x, turned_y
-from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIN, X, Y
-from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED, carried, hang
-from mbsd.kinematics.groups.groups import FIRST, K1, K2, THIRD
-from mbsd.kinematics.groups.kind import Made
-from mbsd.kinematics.groups.links import Link, Places
+from mbsd.kinematics.groups.carried import (
+    COS,
+    DOUBTED,
+    OMEGA,
+    SIN,
+    SOLVED,
+    X,
+    Y,
+    carried,
+    carry_column,
+    hang,
+    hang_column,
+    place_by_point,
+    turned_x,
+    turned_y,
+)
+from mbsd.kinematics.groups.cases import angle_of, predicted
+from mbsd.kinematics.groups.groups import FIRST, K1, K2, THIRD, Link, Made, Places
 
 P1_X, P1_Y, PA_X, PA_Y, CONSTANT, CARRIES_ON = range(6)
 """P on K1, P on A, constant of the sum (rad), 1 if other groups stand on A."""
@@ -23,7 +34,7 @@ UNSURE = 1.0
 
 
 def train(at: Places, body: int, pin: Link, constant: float, shares: dict[int, float]) -> Made | None:
-    """A group for columns of B; None where the angle is a sum of more than two."""
+    """Return a group for columns of B; None where the angle is a sum of more than two."""
     if len(shares) > 2:
         return None
     (second, share_2), (third, share_3) = [*shares.items(), (0, 0.0), (0, 0.0)][:2]
@@ -59,7 +70,7 @@ def solve_train(bodies, n, train, body_of, share_of, qk, vk, ak, turn, point):
 
 @lazy(int)
 def embed_train(bodies, n, body, rate, base, coordinate):
-    """Positions and columns of B. See prp.embed_prp."""
+    """Place the body and fill its columns of B. See prp.solve_prp."""
     a = bodies[FIRST]
     k1 = bodies[K1]
     k2 = bodies[K2]
@@ -79,8 +90,8 @@ def embed_train(bodies, n, body, rate, base, coordinate):
     py = turned_y(body, k1, n[P1_X], n[P1_Y])
     cx = body[k1, X] + px
     cy = body[k1, Y] + py
-    ax = put(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
-    ay = put(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
+    ax = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
+    ay = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
     for j in range(columns + 1):
         cx = carry_column(body, rate, columns, j, k1, px, py, 0)
         cy = carry_column(body, rate, columns, j, k1, px, py, 1)

@@ -4,13 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turn_as, turned_x, turned_y
-from mbsd.kinematics.groups.carrying.cases import columns_of, formula
-from mbsd.kinematics.groups.carrying.columns import OMEGA, X, Y
-from mbsd.kinematics.groups.carrying.rates import SOLVED
-from mbsd.kinematics.groups.groups import FIRST, K1, WELDED
-from mbsd.kinematics.groups.kind import GroupKind, Made
-from mbsd.kinematics.groups.links import Link, Places, own_angle
+from mbsd.kinematics.groups.carried import (
+    OMEGA,
+    SOLVED,
+    X,
+    Y,
+    carry_column,
+    hang_column,
+    place_by_point,
+    turn_as,
+    turned_x,
+    turned_y,
+)
+from mbsd.kinematics.groups.cases import columns_of, formula
+from mbsd.kinematics.groups.groups import FIRST, K1, WELDED, GroupKind, Link, Made, Places, own_angle
 
 P1_X, P1_Y, PA_X, PA_Y, ANGLE = range(5)
 """P on K1, P on A; angle of A against K1 (rad)."""
@@ -19,7 +26,7 @@ COS_A, SIN_A = ANGLE, 5
 
 
 def welded(at: Places, body: int, links: dict[str, Link]) -> Made:
-    """A body with a weld."""
+    """Return a body with a weld."""
     weld = links["W"]
     return WELDED, (body, -1, weld.other, 0), 0, [*at.pin(weld), own_angle(weld)]
 
@@ -45,8 +52,8 @@ def solve_welded(case, e):
     turn_as(body, a, k1, n[COS_A], n[SIN_A])
     cx = body[k1, X] + px
     cy = body[k1, Y] + py
-    ax = put(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
-    ay = put(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
+    ax = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
+    ay = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
     body[a, OMEGA] = body[k1, OMEGA]
     for j in range(columns + 1):
         cx = carry_column(body, case.rate, columns, j, k1, px, py, 0)

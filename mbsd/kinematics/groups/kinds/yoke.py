@@ -9,13 +9,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbsd.kinematics.groups.carrying.by_column import carry_column, hang_column, put, turn_as, turned_x, turned_y
-from mbsd.kinematics.groups.carrying.cases import columns_of, formula, speed_of
-from mbsd.kinematics.groups.carrying.columns import OMEGA, X, Y
-from mbsd.kinematics.groups.carrying.rates import SOLVED
-from mbsd.kinematics.groups.groups import FIRST, K1, K2, YOKE
-from mbsd.kinematics.groups.kind import GroupKind, Made
-from mbsd.kinematics.groups.links import Link, Places, cross, turned
+from mbsd.kinematics.groups.carried import (
+    OMEGA,
+    SOLVED,
+    X,
+    Y,
+    carry_column,
+    hang_column,
+    place_by_point,
+    turn_as,
+    turned_x,
+    turned_y,
+)
+from mbsd.kinematics.groups.cases import columns_of, formula, speed_of
+from mbsd.kinematics.groups.groups import FIRST, K1, K2, YOKE, GroupKind, Link, Made, Places, cross, turned
 
 S1_X, S1_Y, E_X, E_Y, N_X, N_Y, Q2_X, Q2_Y, ANGLE, SA_X, SA_Y = range(11)
 """S_0, e and n on K1, Q on K2, angle of A against K1, the slot's point on A."""
@@ -26,7 +33,7 @@ PARALLEL = 1e-9
 
 
 def yoke(at: Places, a: int, links: dict[str, Link]) -> Made | None:
-    """A sliding body in whose slot a point of a known body runs."""
+    """Return a sliding body in whose slot a point of a known body runs."""
     slide, slot = links["P"], links["S"]
     if not slot.first:
         return None
@@ -76,8 +83,8 @@ def solve_yoke(case, e):
     turn_as(body, a, k1, n[COS_A], n[SIN_A])
     tx = body[k1, X] + sx
     ty = body[k1, Y] + sy
-    ax = put(body, a, tx, ty, n[SA_X], n[SA_Y], 0)
-    ay = put(body, a, tx, ty, n[SA_X], n[SA_Y], 1)
+    ax = place_by_point(body, a, tx, ty, n[SA_X], n[SA_Y], 0)
+    ay = place_by_point(body, a, tx, ty, n[SA_X], n[SA_Y], 1)
     spin = body[k1, OMEGA]
     body[a, OMEGA] = spin
     sliding = 0.0

@@ -4,33 +4,151 @@
     correct   G du = -F,  G = J B;  B the rates of the bodies for unit rates of the unknowns
     then      G u' = f' - J v,   G u'' = gamma + f'' - J a      v, a of the block with its unknowns held
 
-It is compiled when a plan with blocks is first solved.
+It is compiled when a plan with blocks is first solved. Tables are those of mbsd/kinematics/groups/blocks.py. The loop
+is not that of newton.py, since its unknowns are those of hanging bodies and its matrix is small and dense; the test of
+its corrections and the guard are. Simulations in independent coordinates close their blocks by :func:`iterate`, too.
 """
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import lazy
+import math
+
+from mbsd.compiling.jit import lazy, merged
 from mbsd.kinematics.groups.blocks import (
     BODIES,
     BODY,
+    DOUBTED_BEFORE,
     EQUATIONS,
+    FREE,
+    HANGS,
+    LARGEST,
     MOTION,
+    NEAR,
+    PLACE_I,
+    PLACE_J,
     SIZE,
+    SLIDE,
     STRIDE,
+    UNKNOWN,
+    UNKNOWNS,
+    Motion,
 )
-from mbsd.kinematics.groups.carrying.rates import DOUBTED, MEETING, SOLVED
-from mbsd.kinematics.groups.newton.fused import fused
-from mbsd.kinematics.groups.newton.guard import in_doubt
-from mbsd.kinematics.groups.newton.iteration import iterate
-from mbsd.kinematics.groups.newton.matrix import held, solve
-from mbsd.kinematics.groups.newton.records import Motion
-from mbsd.kinematics.groups.newton.rows import bend_of, move, read_unknowns
-from mbsd.kinematics.law_step import jumps
-from mbsd.kinematics.newton import ROUNDING
-from mbsd.kinematics.predictor import quintic_factors, quintic_value
+from mbsd.kinematics.groups.carried import DOUBTED, MEETING, SOLVED
+from mbsd.kinematics.groups.newton.matrix import extent, factor, held, solve, turns_too_far
+from mbsd.kinematics.groups.newton.rows import bend_of, evaluate_row, fill_columns, move, read_unknowns
+from mbsd.kinematics.newton import (
+    MAX_ITERATIONS,
+    ROUNDING,
+    has_settled,
+    heads_for_zero,
+    is_suspicious,
+    jumps,
+    quintic_factors,
+    quintic_value,
+)
+
+COLUMNS = LARGEST * LARGEST
+"""Where the columns of unknowns begin in the scratch, after the matrix."""
 
 
-@fused
+@merged
+def linearise(block, q, turn, work, values):
+    """Fill values (n,) of the equations, their rows and derivatives in ``work``, and G in its matrix."""
+    count = block.head[BODIES]
+    n = block.head[EQUATIONS]
+    rows = block.rows
+    jac = work.jac
+    scratch = work.matrix
+    fill_columns(block, q, turn, scratch[COLUMNS:])
+    relative = scratch[COLUMNS + 3 * n * count :]
+    for r in range(n):
+        values[r] = evaluate_row(rows[r], block.arms[r], q, turn, block.numbers, relative, work.out[r], jac[r])
+        first = rows[r, PLACE_I]
+        second = rows[r, PLACE_J]
+        for j in range(n):
+            rate = 0.0
+            for c in range(3):
+                if first >= 0:
+                    rate += jac[r, c] * scratch[COLUMNS + 3 * (n * first + j) + c]
+                if second >= 0:
+                    rate += jac[r, 3 + c] * scratch[COLUMNS + 3 * (n * second + j) + c]
+            scratch[n * r + j] = rate
+
+
+@merged
+def correction(block, du, per_metre):
+    """Return largest of a change of the unknowns, in sizes and rad; NaN counts as infinite."""
+    tree = block.tree
+    largest = 0.0
+    for e in range(block.head[BODIES]):
+        c = tree[e, UNKNOWN]
+        hangs = tree[e, HANGS]
+        for i in range(UNKNOWNS[hangs]):
+            part = abs(du[c + i])
+            if hangs == SLIDE or (hangs == FREE and i < 2):
+                part *= per_metre
+            if not part <= largest:
+                largest = part if part == part else math.inf
+    return largest
+
+
+@merged
+def iterate(turned, block, drive, motion, work):
+    """Correct the unknowns (3, n); ``turned``: pins' angles are in ``motion.turn`` at first.
+
+    ``work`` takes the factors of G and the equations; bodies stand where the last of them were evaluated. Returns the
+    determinant of G, 0 where it is singular, and the last, first and second correction.
+    """
+    n = block.head[EQUATIONS]
+    unknown = work.unknown
+    du = work.solution
+    scratch = work.matrix
+    per_metre = 1.0 / block.arms[0, SIZE]
+    determinant = 0.0
+    first = 0.0
+    second = 0.0
+    last = math.inf
+    change = math.inf
+    for iteration in range(MAX_ITERATIONS):
+        move(block, unknown, turned and iteration == 0, motion, work.point)
+        linearise(block, motion.q, motion.turn, work, du[0])
+        determinant = factor(scratch, du[1], n)
+        if determinant == 0.0:
+            break
+        for r in range(n):
+            du[0, r] = drive[block.rows[r, MOTION], 0] - du[0, r]
+        solve(scratch, du[1], n, du[0])
+        for c in range(n):
+            unknown[0, c] += du[0, c]
+        change = correction(block, du[0], per_metre)
+        if iteration == 0:
+            first = change
+        elif iteration == 1:
+            second = change
+        if has_settled(iteration, change, last):
+            break
+        last = change
+    return determinant, change, first, second
+
+
+@merged
+def in_doubt(k, block, history, h, per_metre, first, second):
+    """Return SOLVED if row k is on its branch, else in which step a pose is needed."""
+    q = history.q
+    step = 0.0
+    for e in range(block.head[BODIES]):
+        step = max(step, extent(q[k], q[k - 1], block.tree[e, BODY], per_metre))
+    for e in range(block.head[NEAR]):
+        step = max(step, extent(q[k], q[k - 1], block.near[e], per_metre))
+    if is_suspicious(first, second, step):
+        return DOUBTED
+    refused = heads_for_zero(history.determinant, history.times, k, 0)
+    if refused > 0:
+        return DOUBTED if refused == k else DOUBTED_BEFORE
+    return DOUBTED if turns_too_far(block.head, block.tree, q, history.v, history.a, k, h, per_metre) else SOLVED
+
+
+@merged
 def predict(k, block, history):
     """Fill row k of q for the block's bodies."""
     tree = block.tree

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import math
 
+from mbsd.compiling.jit import merged
 from mbsd.kinematics.groups.blocks import BODIES, BODY, BODY_I, BODY_J, CARRIES
-from mbsd.kinematics.groups.carrying.rates import WOUND
-from mbsd.kinematics.groups.newton.fused import fused
+from mbsd.kinematics.groups.carried import WOUND
 from mbsd.kinematics.newton import UNEXPLAINED
 
 SINGULAR = 1e-12
 """Smallest pivot beside the largest."""
 
 
-@fused
+@merged
 def factor(matrix, order, n):
-    """LU of matrix (n n,) with partial pivoting; returns its determinant, 0 where it is singular."""
+    """Factorise matrix (n n,) by LU with row pivoting; return its determinant, 0 where it is singular."""
     determinant = 1.0
     smallest = math.inf
     largest = 0.0
@@ -41,7 +41,7 @@ def factor(matrix, order, n):
     return determinant if smallest > SINGULAR * largest else 0.0
 
 
-@fused
+@merged
 def solve(matrix, order, n, x):
     """Solve in place with the factors."""
     for c in range(n):
@@ -56,9 +56,9 @@ def solve(matrix, order, n, x):
         x[c] /= matrix[n * c + c]
 
 
-@fused
+@merged
 def held(jac, row, rates):
-    """Rate of an equation at rates (3 nb,) of the bodies."""
+    """Return rate of an equation at rates (3 nb,) of the bodies."""
     i = 3 * row[BODY_I]
     j = 3 * row[BODY_J]
     rate = 0.0
@@ -67,15 +67,15 @@ def held(jac, row, rates):
     return rate
 
 
-@fused
+@merged
 def extent(q, last, body, per_metre):
-    """How far a body goes, in sizes and rad; NaN counts as infinite."""
+    """Return how far a body goes, in sizes and rad; NaN counts as infinite."""
     b = 3 * body
     way = max(abs(q[b] - last[b]) * per_metre, abs(q[b + 1] - last[b + 1]) * per_metre, abs(q[b + 2] - last[b + 2]))
     return way if way == way else math.inf
 
 
-@fused
+@merged
 def turns_too_far(head, tree, q, v, a, k, h, per_metre):
     """Return True if rates do not explain the step of a body, or a carrying one winds on.
 

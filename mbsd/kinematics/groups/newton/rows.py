@@ -1,13 +1,30 @@
 """Places, columns of unknowns and equations of one block; tables as in groups/blocks.py.
 
-Equations are those of mbsd/equations/constraints/relative.py with the bodies of the block alone unknown.
+Equations are those of mbsd/equations/relative/equation.py with the bodies of the block alone unknown.
 """
 
 from __future__ import annotations
 
 import math
 
-from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA, FYY, TURN, A, F, X, Y, evaluate
+from mbsd.compiling.jit import merged
+from mbsd.equations.relative.equation import (
+    FA,
+    FX,
+    FXX,
+    FXY,
+    FY,
+    FYY,
+    TURN,
+    A,
+    F,
+    X,
+    Y,
+    clear,
+    evaluate,
+    fill_row,
+    gamma_of,
+)
 from mbsd.equations.system import LAST, ZERO
 from mbsd.kinematics.groups.blocks import (
     ACROSS,
@@ -31,13 +48,12 @@ from mbsd.kinematics.groups.blocks import (
     TURNED,
     UNKNOWN,
 )
-from mbsd.kinematics.groups.carrying.rates import carried, follow, hang
-from mbsd.kinematics.groups.newton.fused import fused
+from mbsd.kinematics.groups.carried import carried, follow, hang
 
 
-@fused
+@merged
 def read_unknowns(block, q, turn, u):
-    """Unknowns u (n,) of the pose q (3 nb,) of the block's bodies; turns them too."""
+    """Read the unknowns u (n,) of the block's bodies from the pose q (3 nb,), and turn the bodies."""
     tree = block.tree
     count = block.head[BODIES]
     for e in range(count):
@@ -62,7 +78,7 @@ def read_unknowns(block, q, turn, u):
             u[c] = n[2] * ex + n[3] * ey
 
 
-@fused
+@merged
 def slid(q, v, a, turn, parent, n, way, speed, gain, point):
     """Set the point of a slide on ``parent``, with rates: S'' = k'' + 2 omega s' e_perp + s'' e."""
     ex = turn[parent, 0] * n[2] - turn[parent, 1] * n[3]
@@ -75,7 +91,7 @@ def slid(q, v, a, turn, parent, n, way, speed, gain, point):
     point[5] += gain * ey + spin * ex
 
 
-@fused
+@merged
 def move(block, u, turned, motion, point):
     """Place the block's bodies by the unknowns u (3, n) with rates; ``turned``: pins' are in ``turn``."""
     tree = block.tree
@@ -115,9 +131,9 @@ def move(block, u, turned, motion, point):
             hang(q, v, a, turn, body, point[0], n[5], n[6])
 
 
-@fused
+@merged
 def fill_columns(block, q, turn, columns):
-    """columns: (bodies, unknowns, 3) rates of each body for a unit rate of each unknown."""
+    """Fill columns (bodies, unknowns, 3) with rates of each body for a unit rate of each unknown."""
     tree = block.tree
     frame = block.frame
     unknowns = block.head[EQUATIONS]
@@ -156,9 +172,9 @@ def fill_columns(block, q, turn, columns):
             columns[own + 3 * c + 1] += turn[parent, 1] * n[2] + turn[parent, 0] * n[3]
 
 
-@fused
+@merged
 def evaluate_row(row, n, q, turn, numbers, relative, out, jac):
-    """F of one equation; out (10,) takes it with its derivatives, jac (6,) its row on bodies i and j."""
+    """Return F of an equation; fill out (10,) with F and its derivatives, jac (6,) with its row."""
     i = row[BODY_I]
     j = row[BODY_J]
     six = turn[i, 0] * n[0] - turn[i, 1] * n[1]
@@ -182,8 +198,7 @@ def evaluate_row(row, n, q, turn, numbers, relative, out, jac):
         relative[LAST] = math.nan
         evaluate(row[ADDRESS], numbers[row[AT] :], relative, out)
     else:
-        for c in range(FX, FAA + 1):
-            out[c] = 0.0
+        clear(out)
         if kind == ALONG:
             out[F] = x - n[6]
             out[FX] = 1.0
@@ -202,20 +217,13 @@ def evaluate_row(row, n, q, turn, numbers, relative, out, jac):
             out[FXX] = y * y / cube
             out[FXY] = -x * y / cube
             out[FYY] = x * x / cube
-    gx = out[FX] * ux - out[FY] * uy
-    gy = out[FX] * uy + out[FY] * ux
-    jac[0] = -gx
-    jac[1] = -gy
-    jac[2] = out[FX] * y - out[FY] * x + gx * siy - gy * six - out[FA]
-    jac[3] = gx
-    jac[4] = gy
-    jac[5] = -gx * sjy + gy * sjx + out[FA]
+    fill_row(out, ux, uy, x, y, six, siy, sjx, sjy, jac)
     return out[F]
 
 
-@fused
+@merged
 def bend_of(row, n, q, v, turn, out):
-    """gamma of one equation without f'', after evaluate_row at the same pose."""
+    """Return gamma of one equation without f'', after evaluate_row at the same pose."""
     i = row[BODY_I]
     j = row[BODY_J]
     omega = v[3 * i + 2]
@@ -234,17 +242,4 @@ def bend_of(row, n, q, v, turn, out):
     cy = omega * omega * siy - other * other * sjy
     x = ux * dx + uy * dy
     y = ux * dy - uy * dx
-    along = ux * vx + uy * vy
-    across = ux * vy - uy * vx
-    gamma_x = -(ux * cx + uy * cy + 2.0 * omega * across - omega * omega * x)
-    gamma_y = -(ux * cy - uy * cx - 2.0 * omega * along - omega * omega * y)
-    x_rate = along + omega * y
-    y_rate = across - omega * x
-    a_rate = other - omega
-    bend = (
-        out[FXX] * x_rate * x_rate
-        + out[FYY] * y_rate * y_rate
-        + out[FAA] * a_rate * a_rate
-        + 2.0 * (out[FXY] * x_rate * y_rate + out[FXA] * x_rate * a_rate + out[FYA] * y_rate * a_rate)
-    )
-    return out[FX] * gamma_x + out[FY] * gamma_y - bend
+    return gamma_of(out, ux, uy, x, y, vx, vy, cx, cy, omega, other - omega)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import singledispatch
 from typing import TYPE_CHECKING, Any, Protocol
 
-from shared.contract.mount import Mount
+from shared.contract.parts import Mount
 from shared.shapes.link import Eye
 from shared.shapes.solid import Solid
 

@@ -11,11 +11,9 @@ import numpy as np
 
 from mechanisms.stages.loading.wishes import wished_scale
 from mechanisms.stages.parts_files import TOLERANCE
-from shared.shapes.fit import Fit
-from shared.shapes.pin import Head
-from shared.shapes.pivot import Pivot
+from shared.shapes.pin import Head, Pivot
 from shared.shapes.screw import SOCKET
-from shared.shapes.standards import CIRCLIPS, shim_ring
+from shared.shapes.standards import CIRCLIPS, Fit, shim_ring
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
 from shared.stage.face import said

@@ -22,8 +22,8 @@ from shared.shapes.build import eased, extruded
 from shared.shapes.link import Eye
 from shared.shapes.outline import circle
 from shared.shapes.pin import Head, pin, stylus
+from shared.shapes.screw import ball
 from shared.shapes.solid import placed
-from shared.shapes.stud import ball
 
 # Traced points on the rim of a wheel, a disc or a cam, where an eye would break teeth or meet the road.
 #

@@ -18,8 +18,8 @@ from mechanisms.stages.automatic.pins.pin_solids import upper_end
 from mechanisms.stages.automatic.pins.pins import SAME, Pin
 from shared.shapes.base import column
 from shared.shapes.link import Eye
+from shared.shapes.screw import Collar, ball_stud
 from shared.shapes.solid import Hold, Solid, placed
-from shared.shapes.stud import Collar, ball_stud
 
 if TYPE_CHECKING:
     import cadquery as cq

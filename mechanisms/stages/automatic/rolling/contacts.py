@@ -18,7 +18,7 @@ from mechanisms.stages.automatic.layout.sizes import Extent, extent
 from mechanisms.stages.automatic.rolling.roads import THICK, Road, along
 from mechanisms.stages.automatic.rolling.rounds import Look, Round, round_at
 from mechanisms.stages.automatic.rolling.tracks import circle, rolled_road, touched_path, touched_road, track
-from shared.shapes.polyline import distances
+from shared.shapes.outline import distances
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
 

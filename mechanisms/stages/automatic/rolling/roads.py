@@ -17,7 +17,7 @@ from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.plan import Foot
 from mechanisms.stages.automatic.layout.planar import around, convex_hull
 from shared.shapes.build import extruded
-from shared.shapes.polyline import distances, simplified
+from shared.shapes.outline import distances, simplified
 
 if TYPE_CHECKING:
     from mbsd import Mechanism

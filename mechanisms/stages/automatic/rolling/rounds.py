@@ -15,8 +15,8 @@ from mechanisms.stages.automatic.pins.free_bodies import Face
 from shared.shapes.build import extruded
 from shared.shapes.outline import circle
 from shared.shapes.pin import washer
+from shared.shapes.screw import ball as sphere
 from shared.shapes.solid import placed
-from shared.shapes.stud import ball as sphere
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:

@@ -37,9 +37,8 @@ from mechanisms.stages.automatic.rolling.roads import (
     straight_back,
 )
 from shared.shapes import outline
-from shared.shapes.band import normals
 from shared.shapes.build import eased, extruded
-from shared.shapes.polyline import distances, simplified
+from shared.shapes.outline import distances, normals, simplified
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
 

@@ -9,10 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from mechanisms.stages.automatic.shafts.cylinders import HEAD, SMALL_END, SQUISH, WRIST_PIN
 from mechanisms.stages.automatic.shafts.passing import DECK, deck_half, deck_range, deck_top
 from mechanisms.stages.automatic.shafts.valves import COIL, port_shape, spring_seats
-from shared.shapes.build import eased, extruded, turned
-from shared.shapes.genus import through_holes
-from shared.shapes.kernel import first_sound
-from shared.shapes.once import built_once
+from shared.shapes.build import built_once, eased, extruded, turned
+from shared.shapes.kernel import first_sound, through_holes
 from shared.shapes.outline import circle
 from shared.shapes.solid import Hold, Solid, placed
 

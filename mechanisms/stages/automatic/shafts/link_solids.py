@@ -18,11 +18,9 @@ from mechanisms.stages.automatic.shafts.bodies import HUB, KNUCKLE_EYE, KNUCKLE_
 from mechanisms.stages.automatic.shafts.cylinders import BIG_END, SHANK
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded
-from shared.shapes.genus import through_holes
-from shared.shapes.kernel import first_sound
+from shared.shapes.kernel import first_sound, rough_box, through_holes
 from shared.shapes.link import Eye, link
 from shared.shapes.pin import Head, pin, washer
-from shared.shapes.rough_box import rough_box
 from shared.shapes.solid import Solid, placed
 
 if TYPE_CHECKING:

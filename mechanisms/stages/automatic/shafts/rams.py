@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from mechanisms.stages.automatic.layout.planar import Rounded, around
 from mechanisms.stages.automatic.shafts.passing import Takes, box
 from shared.shapes.build import extruded
-from shared.shapes.genus import through_holes
+from shared.shapes.kernel import through_holes
 from shared.shapes.outline import circle
 from shared.shapes.solid import Solid, placed
 from shared.stage.errors import UserError

@@ -43,7 +43,7 @@ from mechanisms.stages.automatic.standing import BackPlate, Upright
 from shared.contract.materials import MATERIALS
 from shared.shapes.base import base_plate
 from shared.shapes.build import eased, extruded
-from shared.shapes.genus import through_holes
+from shared.shapes.kernel import through_holes
 from shared.shapes.link import Eye
 from shared.shapes.outline import circle, hull
 from shared.shapes.solid import Solid, placed

@@ -14,7 +14,7 @@ from mechanisms.stages.automatic.shafts.bodies import Mounted, marker_on, place
 from mechanisms.stages.automatic.shafts.cylinders import HEAD
 from mechanisms.stages.automatic.shafts.passing import Takes, box
 from shared.shapes.build import extruded, turned
-from shared.shapes.cam import cam_disc, evenly
+from shared.shapes.cams import cam_disc, evenly
 from shared.shapes.outline import circle
 from shared.shapes.solid import Hold, Solid, placed
 from shared.shapes.units import mm

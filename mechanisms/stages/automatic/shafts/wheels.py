@@ -17,7 +17,7 @@ from mechanisms.stages.automatic.shafts.passing import Takes
 from mechanisms.stages.automatic.wheels.gears import Mesh, in_phase, refuse_apart, wheel_at
 from mechanisms.stages.automatic.wheels.pulleys import BELT, Pulley, belt_of, rim_of
 from mechanisms.stages.automatic.wheels.wheels import HUB, shape_of
-from shared.shapes.genus import through_holes
+from shared.shapes.kernel import through_holes
 from shared.shapes.link import Eye
 from shared.shapes.solid import Solid, placed
 from shared.stage.errors import UserError

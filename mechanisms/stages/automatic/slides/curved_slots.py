@@ -22,7 +22,7 @@ from mechanisms.stages.automatic.layout.plan import build, kind
 from mechanisms.stages.automatic.layout.planar import convex_hull, disc
 from mechanisms.stages.automatic.layout.sizes import Extent, extent
 from mechanisms.stages.automatic.slides.slots import Slot, channelled, entered, slotted
-from shared.shapes.band import normals, sharpest
+from shared.shapes.outline import normals, sharpest
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
 

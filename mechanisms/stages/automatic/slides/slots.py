@@ -18,9 +18,9 @@ from mechanisms.stages.automatic.layout.planar import around, convex_hull, disc
 from mechanisms.stages.automatic.pins.pin_solids import standing
 from mechanisms.stages.automatic.pins.pins import Pin
 from shared.shapes import outline
-from shared.shapes.band import band, loop
 from shared.shapes.build import eased, extruded
 from shared.shapes.link import Eye
+from shared.shapes.outline import band, loop
 from shared.shapes.pin import Head, grooved, pin, washer
 from shared.shapes.solid import Roll, Solid, placed
 from shared.stage.errors import UserError

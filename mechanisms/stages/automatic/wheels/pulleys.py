@@ -16,7 +16,7 @@ from mechanisms.stages.automatic.layout.plan import build
 from mechanisms.stages.automatic.layout.planar import Rounded
 from mechanisms.stages.automatic.layout.sizes import Extent, Sizes, extent
 from mechanisms.stages.automatic.wheels.wheels import Wheel, build_wheel, shape_of, with_hub
-from shared.contract.belt_path import BeltPath
+from shared.contract.geometry import BeltPath
 from shared.shapes.build import extruded, turned
 from shared.shapes.involute import wire
 from shared.shapes.outline import circle

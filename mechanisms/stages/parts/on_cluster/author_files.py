@@ -17,7 +17,7 @@ import msgspec
 from mbsd.dependencies.imported import content_of, named_modules
 from mechanisms.stages.loading.inputs import WORKSHOP, name_of, path_of
 from mechanisms.stages.loading.loading import package_of
-from shared.cluster.contents import content_hash
+from shared.cluster.deal import content_hash
 from shared.cluster.preload import PARTS
 from shared.stage import paths
 from shared.stage.errors import UserError

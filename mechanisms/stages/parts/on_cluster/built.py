@@ -21,9 +21,8 @@ import msgspec
 from mechanisms.stages.loading.inputs import WORKSHOP
 from mechanisms.stages.parts.on_cluster.answer import Made
 from mechanisms.stages.parts.on_cluster.author_files import Order
-from shared.cluster.identity import sources_of
-from shared.cluster.preload import PARTS
-from shared.stage import lineage, locks, paths
+from shared.cluster.preload import PARTS, sources_of
+from shared.stage import files, paths, signals
 from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from shared.stage.paths import ROOT, SOLVER, out_root
@@ -68,7 +67,7 @@ def _scratch(place: Path) -> Iterator[Path]:
     with tempfile.TemporaryDirectory(prefix="made-", dir=place, ignore_cleanup_errors=True) as folder:
         new = Path(folder) / "new"
         with new.open("wb") as lock:
-            locks.try_lock(lock.fileno())
+            files.try_lock(lock.fileno())
             new.rename(Path(folder) / LOCK)
             yield Path(folder) / "tree"
 
@@ -107,7 +106,7 @@ def _stage(tree: Path, order: Order) -> Made:
         "NUMBA_CACHE_DIR": os.environ.get("NUMBA_CACHE_DIR") or str(SOLVER / "__pycache__"),
         "CLUSTER": "",
         paths.WORKSHOP: str(own_folder(tree, order.folder) or ""),
-        lineage.VARIABLE: str(os.getpid()),
+        signals.VARIABLE: str(os.getpid()),
     }
     scale = ["--scale", order.scale] if order.scale else []
     command = [sys.executable, "-m", "mechanisms", "parts", name, *scale]
@@ -137,5 +136,5 @@ def _remove_leftovers(place: Path) -> None:
         with suppress(OSError):
             lock = left / LOCK
             old = time.time() - left.stat().st_mtime > BEGUN
-            if locks.is_abandoned(lock) if lock.exists() else old:
+            if files.is_abandoned(lock) if lock.exists() else old:
                 shutil.rmtree(left, ignore_errors=True)

@@ -12,11 +12,8 @@ from mechanisms.stages.parts.on_cluster import answer, built
 from mechanisms.stages.parts.on_cluster.answer import Made
 from mechanisms.stages.parts.on_cluster.author_files import Order, by_content, collected
 from shared.cluster.address import connected
-from shared.cluster.contents import content_hash
-from shared.cluster.deal import Deal
-from shared.cluster.hands import Work
-from shared.cluster.identity import identity
-from shared.cluster.preload import OF_PARTS, PARTS
+from shared.cluster.deal import Deal, Work, content_hash
+from shared.cluster.preload import OF_PARTS, PARTS, identity
 from shared.stage import paths
 from shared.stage.console import say, warn
 from shared.stage.paths import Out

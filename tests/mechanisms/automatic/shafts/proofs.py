@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from mechanisms.stages.automatic.automatic import Automatic
 from tools.hunt_parts import case
-from tools.models import machines_along as models
+from tools.models import shaft_machines as models
 
 if TYPE_CHECKING:
     from cadquery import BoundBox
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def model(of: str) -> Mechanism:
-    """A model of tools/models/machines_along.py by its name there."""
+    """A model of tools/models/shaft_machines.py by its name there."""
     return models.legs() if of == "LEGS" else models.engine(getattr(models, of))
 
 

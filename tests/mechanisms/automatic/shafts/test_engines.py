@@ -11,7 +11,7 @@ from mechanisms.stages.automatic.shafts.along import Along
 from mechanisms.stages.clearance import slide
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.shafts.proofs import box, plan, proven
-from tools.models.machines_along import INLINE_TWO, THROW, engine
+from tools.models.shaft_machines import INLINE_TWO, THROW, engine
 
 
 def along_of(made: Automatic) -> Along:

@@ -10,7 +10,7 @@ import pytest
 from mbsd import Mechanism, constant_rate
 from mechanisms.stages.automatic.automatic import Automatic
 from tests.mechanisms.automatic.shafts.proofs import checked
-from tools.models.machines_along import SINGLE, engine
+from tools.models.shaft_machines import SINGLE, engine
 
 
 def four_bar(**places: float) -> Mechanism:

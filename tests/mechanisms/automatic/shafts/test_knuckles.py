@@ -97,7 +97,7 @@ def test_knuckle_pins_that_are_too_near_are_refused() -> None:
 
 def test_rods_on_rods_in_planes_of_their_own_keep_their_axles() -> None:
     """A rocker on a leg beside it, as before."""
-    from tools.models.machines_along import legs
+    from tools.models.shaft_machines import legs
 
     own = along_of(legs())
     assert len(own.axles) == 4, "three knees, and one axle for all hips"

@@ -8,7 +8,7 @@ from mbsd import Mechanism, harmonic
 from mechanisms.stages.automatic.automatic import Automatic
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.shafts.proofs import proven
-from tools.models.machines_along import SINGLE, engine, legs
+from tools.models.shaft_machines import SINGLE, engine, legs
 
 
 def refusal(m: Mechanism) -> str:

@@ -16,7 +16,7 @@ from shared.shapes import outline
 from shared.shapes.build import extruded
 from shared.shapes.solid import Solid
 from tests.mechanisms.automatic.shafts.proofs import plan
-from tools.models.machines_along import INLINE_TWO, engine
+from tools.models.shaft_machines import INLINE_TWO, engine
 
 SPEED = 2 * math.pi
 

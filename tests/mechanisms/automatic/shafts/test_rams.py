@@ -11,7 +11,7 @@ from mbsd import Mechanism
 from mechanisms.stages.automatic.automatic import Automatic
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.shafts.proofs import checked
-from tools.models.machines_along import press
+from tools.models.shaft_machines import press
 
 
 def refusal(m: Mechanism) -> str:

@@ -15,7 +15,7 @@ from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.shafts.along import Along
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.shafts.proofs import checked
-from tools.models import machines_along as models
+from tools.models import shaft_machines as models
 
 
 def motor(layout: str, **valves: Any) -> Mechanism:

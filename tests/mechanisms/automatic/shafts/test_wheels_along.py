@@ -10,7 +10,7 @@ from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.shafts.along import Along
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.shafts.proofs import checked
-from tools.models import machines_along
+from tools.models import shaft_machines
 from tools.models import shaft_machines as models
 
 
@@ -98,7 +98,7 @@ def test_a_wheel_among_the_throws_is_told() -> None:
 
 
 def test_a_wheel_that_is_too_small_for_its_shaft_is_told() -> None:
-    m = machines_along.engine(machines_along.SINGLE)
+    m = shaft_machines.engine(shaft_machines.SINGLE)
     beside = m.body("beside")
     m.revolute("axis", m.ground.at(0.2, 0), beside.origin)
     m.belt("belt", m.bodies["crank"].at(0, 0, z=0.12), beside.at(0, 0, z=0.12), radius_i=0.01, radius_j=0.02)

@@ -12,11 +12,11 @@ from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.loading.wishes import wishing
 from shared.contract import consistency
 from shared.contract.materials import MATERIALS
-from shared.contract.mount import Kind
+from shared.contract.parts import Kind
 from shared.shapes.bodies import Bodies
 from shared.shapes.solid import Solid
 from tools.hunt_parts.case import meshed, overlapping, proven
-from tools.models.machines_along import V_TWO, engine
+from tools.models.shaft_machines import V_TWO, engine
 
 STEPS, PIN = 90, 8.0
 

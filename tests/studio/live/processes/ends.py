@@ -10,7 +10,7 @@ import threading
 import time
 from pathlib import Path
 
-from studio.live.frames import framed, unframed
+from studio.live.messages import framed, unframed
 from studio.live.processes.pipe import Pipe
 
 FORKS = "import os, time\nif os.fork() == 0:\n    os.setsid()\nos.write(1, b'%d\\n' % os.getpid())\ntime.sleep(600)\n"

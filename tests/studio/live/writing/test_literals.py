@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 
 from shared.stage.errors import UserError
 from studio.live.numbers import changed, numbers_of
-from studio.live.writing.literals import replaced
-from studio.live.writing.overriding import deciding_line
+from studio.live.writing import deciding_line, replaced
 
 FILE = "mechanisms/x/mechanism.py"
 SOURCE = '''# -*- coding: {coding} -*-
@@ -97,7 +96,7 @@ def test_a_variant_has_its_own() -> None:
         ("class Params:\n    a: tuple = pair()\n", "a[0]", "no number of its own"),
         ("class Params:\n    a: tuple = (*b, 1.0)\n", "a[0]", r"one of \*b"),
         ("class Params:\n    a: float = field(default_factory=f)\n", "a", "no default of its own"),
-        ("class Params:\n    a: float = (\n", "a", "cure it first"),
+        ("class Params:\n    a: float = (\n", "a", "fix it first"),
     ],
 )
 def test_where_there_is_no_literal_it_is_refused(source: str, name: str, says: str) -> None:

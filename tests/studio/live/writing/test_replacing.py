@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from shared.stage.errors import UserError
-from studio.live.writing import replacing
-from studio.live.writing.replacing import Meanwhile, replace
+from studio.live import writing
+from studio.live.writing import Meanwhile, replace
 
 BEFORE, AFTER, SAVED = b"a = 1\n", b"a = 2\n", b"a = 1  # saved by an editor\n"
 
@@ -47,7 +47,7 @@ def test_a_save_before_it_is_put_there_stays(
     file: Path, monkeypatch: pytest.MonkeyPatch, save: Callable[[Path], None], exchanges: bool
 ) -> None:
     if not exchanges:
-        monkeypatch.setattr(replacing, "_exchanged", lambda first, second: False)
+        monkeypatch.setattr(writing, "_exchanged", lambda first, second: False)
     with pytest.raises(Meanwhile):
         save(file)
         replace(file, BEFORE, AFTER)
@@ -60,14 +60,14 @@ def test_a_save_before_it_is_put_there_stays(
 def test_a_save_between_the_last_look_and_the_exchange_stays(
     file: Path, monkeypatch: pytest.MonkeyPatch, save: Callable[[Path], None]
 ) -> None:
-    exchanged, saves = replacing._exchanged, [save]
+    exchanged, saves = writing._exchanged, [save]
 
     def saved_before(first: Path, second: Path) -> bool:
         if saves:
             saves.pop()(file)
         return exchanged(first, second)
 
-    monkeypatch.setattr(replacing, "_exchanged", saved_before)
+    monkeypatch.setattr(writing, "_exchanged", saved_before)
     with pytest.raises(Meanwhile):
         replace(file, BEFORE, AFTER)
     assert file.read_bytes() == SAVED
@@ -82,14 +82,14 @@ def test_an_editor_that_had_opened_the_file_before_is_waited_for(file: Path, mon
             editor.write(SAVED)
             editor.flush()
 
-        monkeypatch.setattr(replacing.time, "sleep", writes)
+        monkeypatch.setattr(writing.time, "sleep", writes)
         with pytest.raises(Meanwhile):
             replace(file, BEFORE, AFTER)
     assert file.read_bytes() == SAVED
 
 
 def test_a_newer_save_is_not_put_back_under_an_older_one(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    exchanged, calls = replacing._exchanged, []
+    exchanged, calls = writing._exchanged, []
 
     def saved_around(first: Path, second: Path) -> bool:
         if not calls:
@@ -100,7 +100,7 @@ def test_a_newer_save_is_not_put_back_under_an_older_one(file: Path, monkeypatch
             file.write_bytes(b"newest\n")
         return done
 
-    monkeypatch.setattr(replacing, "_exchanged", saved_around)
+    monkeypatch.setattr(writing, "_exchanged", saved_around)
     with pytest.raises(Meanwhile):
         replace(file, BEFORE, AFTER)
     assert file.read_bytes() == b"newest\n"

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from studio.live.writing import writer
-from studio.live.writing.replacing import replace
+from studio.live import writing
+from studio.live.writing import replace
 from tests.studio.live.arm import ARM
 from tests.studio.live.served import Page, Served, served
 
@@ -110,7 +110,7 @@ def test_a_save_within_the_write_is_kept_and_written_into(live: Served, monkeypa
 
     with live.page() as page:
         solved(live, page, ARM)
-        monkeypatch.setattr(writer, "replace", saved_before)
+        monkeypatch.setattr(writing, "replace", saved_before)
         told = write(page, length=0.26)
         assert told["kind"] == "line"
         page.heard("solved", wanted=lambda header: header["numbers"][0]["value"] == 0.26)
@@ -127,7 +127,7 @@ def test_a_file_that_is_saved_again_and_again_is_left_alone(live: Served, monkey
 
     with live.page() as page:
         solved(live, page, ARM)
-        monkeypatch.setattr(writer, "replace", saved_before)
+        monkeypatch.setattr(writing, "replace", saved_before)
         assert "saved 3 times while" in write(page, length=0.27)["text"]
         page.heard("solved")  # else the next test's save of the old content is no change
     assert file_of(live).read_text() == saves[-1]
@@ -141,7 +141,7 @@ def test_a_number_that_moves_on_while_it_is_written_stays_moved(live: Served, mo
 
     with live.page() as page:
         solved(live, page, ARM)
-        monkeypatch.setattr(writer, "replace", moved_before)
+        monkeypatch.setattr(writing, "replace", moved_before)
         assert write(page, length=0.28)["kind"] == "line"
         page.heard("solved")
     assert "length: float = 0.28 " in file_of(live).read_text()

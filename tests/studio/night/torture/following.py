@@ -19,7 +19,7 @@ import psutil
 
 from shared.stage.paths import ROOT
 from shared.stage.signals import end_with_parent
-from studio.live.frames import unframed
+from studio.live.messages import unframed
 from studio.live.processes.trees import MARK
 
 SAVES = 6

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from studio.night.files import runs
+from studio.night import runs
 from tests.studio.night.torture.project import COORDINATOR, Project
 from tests.studio.night.torture.stage import MODULE
 

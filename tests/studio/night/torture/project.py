@@ -15,7 +15,7 @@ from render.frames.store import FrameStore
 from shared.contract.shot import Camera, Shot
 from shared.stage.paths import ROOT, Out
 from shared.stage.signals import end_with_parent
-from studio.night.files import record, runs
+from studio.night import runs
 from tests.studio.night.torture.processes import Process, processes
 from tests.studio.night.torture.stage import RENDERED
 from tests.studio.night.torture.workers import Workers
@@ -162,7 +162,7 @@ class Project:
         first = self.runs[0]
         if "overnight" not in str(first.args) or first.returncode:
             return first.returncode
-        recorded = record.read(runs.Run(1))
+        recorded = runs.read(runs.Run(1))
         return 0 if recorded is not None and recorded.ended == "done" else 1
 
     def said(self) -> str:

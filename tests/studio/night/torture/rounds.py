@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from render.blender.picture_file import is_as_named
-from studio.night.files import runs
+from studio.night import runs
 from tests.studio.night.torture.faults import BLENDER, FILM, MAKE, STAGE, Fault
 from tests.studio.night.torture.hits import TARGETS
 from tests.studio.night.torture.project import Project

@@ -1,4 +1,4 @@
-/** Interpolation on a tensor grid of Chebyshev points, as studio/site/designs/chebyshev.py makes and checks it. */
+/** Interpolation on a tensor grid of Chebyshev points, as studio/site/designs/table.py makes and checks it. */
 
 /** What each node counts at x; the sum is 1. @param {number} x  @param {number[]} nodes  @returns {Float64Array} */
 export function weights(x, nodes) {

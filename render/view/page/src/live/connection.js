@@ -1,5 +1,5 @@
 /**
- * The socket to a live page's server: frames in, wishes out; it comes back by itself. studio/live/frames.py and
+ * The socket to a live page's server: frames in, wishes out; it comes back by itself. studio/live/messages.py and
  * session.py say what is in them.
  */
 const AGAIN = 800;

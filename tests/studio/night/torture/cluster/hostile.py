@@ -12,7 +12,7 @@ import msgspec
 from mbsd.dealing.report import Report, encoded
 from render.blender.picture_file import name_of
 from render.frames.cluster import Made
-from shared.cluster import hands
+from shared.cluster import deal
 from tests.studio.night.torture.stage import STAMP
 
 VARIABLE = "HOSTILE"
@@ -55,4 +55,4 @@ def dask_setup(_: object) -> None:
     def perform(do: Any, common: str, needed: Any, orders: Sequence[tuple[str, Any]], sent: Any) -> Any:
         return kind([key for key, _ in orders])
 
-    hands.perform = perform
+    deal.perform = perform

@@ -1,1 +1,0 @@
-"""Numbers of the page written back into mechanism.py: their places, their effect, the file itself."""

@@ -1,1 +1,0 @@
-"""Files that runs keep in out/night: locks, records, the log."""

@@ -1,1 +1,0 @@
-"""Progress of a run on its films: pictures, pace, forecast, errors."""

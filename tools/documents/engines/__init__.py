@@ -1,1 +1,0 @@
-"""Studies of engines for docs/engines.md and out/engines/."""

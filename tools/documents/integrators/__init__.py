@@ -1,1 +1,0 @@
-"""Measured integrators for docs/integrators.md."""

@@ -1,1 +1,0 @@
-"""Whether solutions agree, and what any solution must fulfil by itself."""

@@ -1,1 +1,0 @@
-"""The variations of a driven and of a free motion."""

@@ -1,1 +1,0 @@
-"""One mechanism in other words: what must not change its motion."""

@@ -1,1 +1,0 @@
-"""Pages of the public names of mbsd, from what Python says of them: signatures and docstrings."""

@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd import ModelError, four_stroke, pressure_table, two_stroke
+from mbsd.machines.engines.free_forces import piston_harmonics
 from mbsd.machines.engines.opposed_pistons import opposed_pistons
-from mbsd.machines.engines.piston_harmonics import piston_harmonics
 
 BORE, STROKE, ROD, SPEED = 0.08, 0.09, 0.17, 100.0
 THROW, AREA = STROKE / 2, math.pi / 4 * BORE**2

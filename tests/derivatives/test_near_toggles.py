@@ -72,8 +72,8 @@ def test_masses_too_far_apart_are_refused_in_words() -> None:
 
 @pytest.mark.parametrize("speed", [0.4, 0.8])
 def test_light_links_that_whip_through_a_toggle_leave_a_flywheel_alone(speed: float) -> None:
-    def whip(rod: float = 0.45) -> Mechanism:
-        m = Mechanism("whip", gravity=(0.0, -9.81))
+    def whip(rod: float = 0.45) -> mbsd.Mechanism:
+        m = mbsd.Mechanism("whip", gravity=(0.0, -9.81))
         crank, link = m.body("crank", 1.4, (0.13, 0.02), 0.014), m.body("rod", rod, (0.32, -0.07), 0.06)
         wheel = m.body("flywheel", 5e5, (0.2, 0.0), 3.5e4)
         m.revolute("O", m.ground.at(0.432, -0.229), crank.origin)

@@ -1,4 +1,4 @@
-"""The program ``mbsd``: ``mbsd run excavator``, and all that ``mbsd --help`` lists; also as ``python -m mbsd``.
+"""The program ``mbsd``, also ``python -m mbsd``: ``mbsd run excavator``, and what ``--help`` lists.
 
 ``mbsd compile`` compiles all kernels now, so that the first real run does not wait for it. Each part of that solves a
 small mechanism that uses some entry points, in a process of its own: as many at a time as there are cores. What two

@@ -4,7 +4,7 @@
     rod = m.bar("rod", 0.5, mass=1.0)
     m.revolute("A", m.ground.at(0, 0), rod.start)
 
-Everything wrong is refused here, by name, before anything is solved.
+Every error of a model is raised here, by name, before anything is solved.
 """
 
 from __future__ import annotations
@@ -113,7 +113,7 @@ class Mechanism(Building):
         steps: int = 360,
         threads: int | None = None,
     ) -> Batch:
-        """Sweep n designs of this mechanism at once, tens of thousands a second: traced points, and angles asked for.
+        """Sweep n designs of this mechanism at once: traced points, and the ``angles`` of bodies.
 
         ``lengths``: bar names to (n,) lengths (m), which move the bar's ``end``, or rods (distance joints) to their
         lengths. ``places``: joint names to (n, 2) places (m) of the joint's marker on ground, or else of its first
@@ -215,7 +215,7 @@ class Mechanism(Building):
         simulate: bool | None = None,
         tolerance: float = 1e-9,
     ) -> Sensitivities:
-        """Derivatives of what a motion is by numbers of the model: of a sweep, or of a simulation with its events.
+        """Return derivatives of results of a sweep or simulation, events included, by numbers of the model.
 
         ``of``: names of quantities (``"P.x"``, ``"A.fx"``, ``"motor.effort"``, as measures have them), a list of them,
         a measure alone, or labels to quantities, measures (mbsd.measures) and functions of a solution. ``to``: names of
@@ -298,7 +298,7 @@ class Mechanism(Building):
     # -- pictures ----------------------------------------------------------------------------------------------
 
     def draw(self, ax: Axes | None = None, frames: bool = True, names: bool = True) -> Picture:
-        """The skeleton at the start, with joints by their standard symbols, into ``ax`` or a figure of its own.
+        """Draw the skeleton at the start, with symbols of joints, into ``ax`` or a figure of its own.
 
         ``frames`` shows the bodies' axes (x red, y green). Links that do not close are shown where they were put.
         A notebook shows the result, ``.save(path)`` writes it. Needs the extra ``draw``.
@@ -309,14 +309,14 @@ class Mechanism(Building):
         return draw(self, start_pose(self), ax, frames, names)
 
     def topology(self) -> Svg:
-        """Bodies and joints as a diagram, redundant joints in red; a notebook shows it, ``.save(path)`` writes SVG."""
+        """Return bodies and joints as a diagram, redundant joints in red; ``.save(path)`` writes SVG."""
         from mbsd.drawing.topology.topology import topology
 
         return topology(self)
 
     @property
     def drawer(self) -> SkeletonDrawer:
-        """The drawer of its solutions, for :meth:`mbsd.results.solution.Solution.draw`, ``animate`` and ``view``."""
+        """The drawer of its solutions, for ``draw``, ``animate`` and ``view`` of a Solution."""
         from mbsd.drawing.of_solution import SkeletonDrawer
 
         return SkeletonDrawer()

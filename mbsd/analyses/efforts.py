@@ -1,4 +1,4 @@
-"""Efforts and motions: the efforts that a given motion takes, and a mechanism moved by efforts instead of laws.
+"""Efforts: those that a given motion takes, and a mechanism moved by efforts instead of laws.
 
     M a + J^T lam = Q + P e        J: joints alone;  P: unit directions of the actuators;  lam, e of least norm
 
@@ -40,7 +40,7 @@ UNBALANCED = 1e-6
 
 
 def unit_direction(packed: Packed, force: Force, q: np.ndarray, time: float) -> np.ndarray:
-    """(3 nb,) generalised force of one newton (newton metre) of a force in pose q (3 nb,). Raises ModelError."""
+    """Return (3 nb,) the generalised force of one N (N m) of a force in pose q (3 nb,). Raises ModelError."""
     return _directions(packed, force, q[None], np.array([time]))[0]
 
 

@@ -1,4 +1,4 @@
-"""Static equilibrium: a pose on the constraints where the loads do no work in any motion that the joints leave.
+"""Static equilibrium: a pose where the loads do no work in any motion that the joints leave.
 
     Phi(q) = 0,   T^T Q(q) = 0        T: tangent basis, Q: weight, springs and other forces at rest, drivers hold
 
@@ -107,7 +107,7 @@ def equilibrium(m: Model, time: float, nearest: bool) -> Equilibrium:
     """See :meth:`mbsd.mechanism.Mechanism.equilibrium`."""
     if len(m.bodies) < 2:
         raise ModelError(f"{m.name}: there is no body beside ground; add one with m.bar(...) or m.body(...)")
-    refuse_states(m, "equilibrium()")
+    check_no_states(m, "equilibrium()")
     if not math.isfinite(time):
         raise ModelError(f"{m.name}: time is {time} s; it must be finite")
     resting = held(m, time)
@@ -152,7 +152,7 @@ def _result(m: Model, resting: Model, ready: Statics, q: np.ndarray, steps: int)
 
 
 def _stability(ready: Statics, q: np.ndarray, stiffness: np.ndarray, load: float) -> str:
-    """Return the stability of the least stable group; ``stiffness`` (f, f) and largest load are those of all."""
+    """Return the stability of the least stable group; ``stiffness`` (f, f) and ``load`` are of all."""
     if len(ready.groups) == 1:
         return _stability_of(stiffness, load)
     words = set()
@@ -198,8 +198,8 @@ def _solution(m: Model, ready: Statics, q: np.ndarray, lam: np.ndarray, mobility
     )
 
 
-def refuse_states(m: Model, what: str) -> None:
-    """Raise ModelError where a force carries states, such as pressures: no pose gives its force to ``what``."""
+def check_no_states(m: Model, what: str) -> None:
+    """Raise ModelError where a force carries states, such as pressures, which no pose gives to ``what``."""
     for force in m.forces.values():
         if force.kind.states is not None:
             raise ModelError(

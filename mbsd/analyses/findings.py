@@ -47,7 +47,7 @@ START_REMEDY = "Look at lengths and places of what it names; m.draw() shows the 
 
 
 def start_problems(m: Model) -> Iterator[Finding]:
-    """Yield what keeps ``m`` from being assembled: links that cannot close, gears apart, a rack on the other side."""
+    """Yield the reasons why ``m`` cannot be assembled: open links, gears apart, a rack on the other side."""
     try:
         mobility(m)
     except MechanismError as error:
@@ -58,7 +58,7 @@ def start_problems(m: Model) -> Iterator[Finding]:
 
 
 def _meshes_apart(m: Model) -> Iterator[Finding]:
-    """Gears with play whose centres stand so far from the sum of their radii at the start that no teeth mesh."""
+    """Yield gears with play whose centres are too far from the sum of their radii for teeth to mesh."""
     if not any(force.kind.mesh for force in m.forces.values()):
         return
     packed = pack(m)
@@ -109,7 +109,7 @@ class _Connection:
 
 
 def change_point_chains(m: Model) -> list[Finding]:
-    """Return a finding for each closed chain with change points, with its lengths; none where ``m`` does not close."""
+    """Return a finding for each closed chain with change points; none where ``m`` does not close."""
     pairs = [joint.kind.pair for joint in m.joints.values()]
     if pairs.count(PIN) < LINKS - 1:
         return []

@@ -1,4 +1,4 @@
-"""The state about which a mechanism is linearised, as the start of a copy; drivers that are inputs are released."""
+"""The state about which a mechanism is linearised, as the start of a copy without input drivers."""
 
 from __future__ import annotations
 

@@ -144,7 +144,7 @@ def _spread(z: np.ndarray, at: np.ndarray, f: int) -> np.ndarray:
 
 
 def _modes_among(a: np.ndarray, f: int) -> tuple[np.ndarray, list[tuple[complex, np.ndarray]]]:
-    """(k, f) displacements that nothing pulls back, and eigenvalues that are not zero with their shapes (f,)."""
+    """Return (k, f) displacements that nothing pulls back, and the other eigenvalues with shapes (f,)."""
     values, vectors = np.linalg.eig(a)
     pull, slow = a[f : 2 * f, :f], a[f : 2 * f, f : 2 * f]
     largest = float(np.abs(pull).max()) + float(np.abs(slow).max()) ** 2

@@ -121,7 +121,7 @@ class Linearisation(Suggesting):
 
 
 def _drop_rounding(slopes: np.ndarray, group: np.ndarray, fall: float) -> None:
-    """Make entries of slopes (f, 2 f) zero that are rounding beside those of their group (f,), or between groups.
+    """Set entries of slopes (f, 2 f) to zero that are rounding within a group (f,), or between groups.
 
     Where there are several groups, one that nothing pulls at has rounding of the weight, ``fall`` (1/s^2), alone.
     """
@@ -137,7 +137,7 @@ def _drop_rounding(slopes: np.ndarray, group: np.ndarray, fall: float) -> None:
             slopes[np.ix_(at, first + at)] = block
 
 
-def _refuse_massless(model: str, names: tuple[str, ...], mass: np.ndarray) -> None:
+def _check_masses(model: str, names: tuple[str, ...], mass: np.ndarray) -> None:
     """Raise MobilityError for a motion (f, f) that moves no mass: it has no equation of motion."""
     size = np.sqrt(np.maximum(np.diag(mass), 0.0))
     if not (size > 0).all():
@@ -160,7 +160,7 @@ def linearise(m: Model, time: float, inputs: Sequence[str]) -> Linearisation:
     """
     ready = prepare_dynamics(m, time, time)
     refuse_closed(m, ready.packed, ready.initial.q)
-    _refuse_sticking(ready)
+    _check_sticking(ready)
     flow = _Flow(ready, time)
     f = len(flow.independent.names)
     if not f:
@@ -172,7 +172,7 @@ def linearise(m: Model, time: float, inputs: Sequence[str]) -> Linearisation:
         )
     basis = flow.independent.basis
     mass = basis.T @ (ready.dynamics.inertia[3 : 3 + len(basis), None] * basis)
-    _refuse_massless(ready.packed.name, flow.independent.names, mass)
+    _check_masses(ready.packed.name, flow.independent.names, mass)
     count = 2 * f + len(flow.ones)
     state = np.zeros((count, count))
     state[:f, f : 2 * f] = np.eye(f)
@@ -205,7 +205,7 @@ def linearise(m: Model, time: float, inputs: Sequence[str]) -> Linearisation:
     )
 
 
-def _refuse_sticking(ready: PreparedDynamics) -> None:
+def _check_sticking(ready: PreparedDynamics) -> None:
     """Friction of a joint at rest jumps with the sign of its rate: there is no linear motion about it."""
     packed = ready.packed
     at = ready.initial.q.reshape(1, -1, 3), ready.initial.v.reshape(1, -1, 3)

@@ -105,7 +105,7 @@ def longest_step(packed: Packed, usual: float) -> float:
 
 
 def pose_step(packed: Packed, q: np.ndarray, usual: float) -> float:
-    """The step in sizes and rad at the pose q (3 nb,): ``usual``, or less where journals are near their bearings."""
+    """Return the step (sizes, rad) at q (3 nb,): ``usual``, or less where journals are near bearings."""
     gaps = [float(gap) for force in packed.forces for gap in gaps_of(packed, force, q[None])]
     return max(min([usual, *(PART * gap / packed.size for gap in gaps)]), LEAST)
 
@@ -133,7 +133,7 @@ class Statics(Suggesting):
 
     @cached_property
     def groups(self) -> list[Statics]:
-        """The same of each set of bodies that joints and forces connect: no set is measured by another's loads."""
+        """Statics of each set of connected bodies: no set is measured by the loads of another."""
         group = coupled(self.packed)[1:].repeat(3)
         numbers = np.unique(group)
         return [self] if len(numbers) < 2 else [replace(self, among=group == number) for number in numbers]

@@ -29,7 +29,7 @@ ONE_PLANE = 1e-9
 
 
 def apart(m: Model) -> Iterator[tuple[str, str, float, float]]:
-    """Name, kind, and places (m) of both sides, where these differ and cannot; a place that was not given fits all."""
+    """Yield names and kinds whose sides must share a plane and do not, with both positions z (m)."""
     for part in (*m.joints.values(), *m.drivers.values(), *m.contacts.values(), *m.forces.values()):
         i, j = _plane(m, part.i), _plane(m, part.j)
         if i is not None and j is not None and abs(i - j) > ONE_PLANE and _needs_one(part):
@@ -169,7 +169,7 @@ def tell(m: Model) -> None:
 
 
 def body_sizes(m: Model) -> dict[str, float]:
-    """The usual distance (m) from joint to joint of each body, or a bar's length; 0 where there are no two."""
+    """Return the usual distance (m) between joints of each body, or a bar's length; 0 if unknown."""
     places: dict[str, list[tuple[float, float]]] = {name: [] for name in m.bodies}
     for joint in m.joints.values():
         for marker in (joint.i, joint.j):
@@ -240,7 +240,7 @@ def _gravity(m: Model) -> Iterator[Finding]:
 
 
 def _odd_ones_out(values: dict[str, float], gap: float) -> tuple[list[str], float]:
-    """The smaller group of names where the sorted values leap by ``gap`` or more, and a typical value of the others."""
+    """Return the smaller group of names beyond a leap by ``gap``, and a typical value of the others."""
     names = sorted((name for name, value in values.items() if value > 0), key=lambda name: values[name])
     for k in range(1, len(names)):
         if values[names[k]] >= gap * values[names[k - 1]]:

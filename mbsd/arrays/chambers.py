@@ -13,8 +13,8 @@ import numpy as np
 from mbsd.arrays.reactions import marker_axes, marker_places
 from mbsd.base.errors import ModelError, ModelWarning
 from mbsd.base.warning import warn
-from mbsd.model.cams.profile import hermite
 from mbsd.model.force import Chamber
+from mbsd.model.laws.numbers import hermite_coefficients
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
@@ -140,7 +140,7 @@ def phase_changes(
             continue
         h = np.diff(t)[step]
         samples = np.stack([angle, placed.angle(states[1]), placed.angle(states[2])], axis=-1)
-        quintics = hermite(h, samples[step], samples[step + 1])
+        quintics = hermite_coefficients(h, samples[step], samples[step + 1])
         low, high, way = np.zeros(len(step)), h.copy(), np.sign(angle[step + 1] - angle[step])
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)

@@ -1,1 +1,1 @@
-"""Inputs of a user's code, recorded while it runs, and hashed: modules, files, folders, variables, packages."""
+"""Inputs of a user's code, recorded while it runs: modules, files, folders, variables, packages."""

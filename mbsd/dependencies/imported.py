@@ -95,7 +95,7 @@ def content_of(file: Path) -> bytes:
 
 @lru_cache(maxsize=8192)  # fewer than a project has modules would keep none: they come in the same order each time
 def named_modules(source: bytes, package: str) -> list[str]:
-    """Return the modules that Python source imports, with the packages above them; none where it does not parse."""
+    """Return the modules that Python source imports, with packages above; none if it does not parse."""
     names: set[str] = set()
     try:
         tree = parsed(source)
@@ -111,7 +111,7 @@ def named_modules(source: bytes, package: str) -> list[str]:
 
 
 def _statements(tree: ast.Module) -> Iterator[ast.AST]:
-    """All statements, in functions and blocks, too; expressions, of which there are ten times as many, import none."""
+    """Yield all statements, those in functions and blocks, too; expressions import nothing."""
     waiting: list[ast.AST] = list(tree.body)
     while waiting:
         node = waiting.pop()

@@ -127,7 +127,7 @@ class Inputs:
 
 
 class Places:
-    """Where a project is: the names of its files, which of them count, and what each holds. ``root`` is its folder."""
+    """The place of a project, its folder ``root``: names of files, which of them count, and their states."""
 
     def __init__(self, root: Path) -> None:
         self._root = root

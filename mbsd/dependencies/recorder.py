@@ -33,7 +33,7 @@ class Recorder:
         self._own = threading.local()
 
     def inputs(self, every_module: bool = False) -> Inputs:
-        """Return the inputs read and the modules loaded so far: all, or those that ``sys.modules`` does not know."""
+        """Return the inputs read and the modules loaded so far, without those that ``sys.modules`` knows."""
         known = set() if every_module else {getattr(module, "__file__", None) for module in list(sys.modules.values())}
         modules = {name: state for name, state in self.modules.items() if str(self.places.path_of(name)) not in known}
         return Inputs(

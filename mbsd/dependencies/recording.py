@@ -1,4 +1,4 @@
-"""Records what a user's code reads while it runs: files, folders, variables of the environment, modules.
+"""Records of the files, folders, variables and modules that a user's code reads while it runs.
 
 Python reports every file that is opened and every folder that is listed (audit events); questions whether a file
 exists and variables of the environment are seen because ``os.stat`` and ``os.environ`` are replaced meanwhile. Left out
@@ -34,8 +34,9 @@ _installed = False
 
 @contextmanager
 def recording(recorder: Recorder) -> Iterator[Recorder]:
-    """Record what is read in this block, in all threads. Blocks may nest, and overlap in threads; a recorder may
-    take in several blocks.
+    """Record what is read in this block, in all threads.
+
+    Blocks may nest, and overlap in threads; a recorder may take in several blocks.
     """
     with _changing:
         _begin(recorder)
@@ -91,9 +92,9 @@ def _hear(event: str, arguments: tuple[Any, ...]) -> None:
 
 
 def _asked_by(frame: FrameType | None, places: Places) -> Literal["user", "import"] | None:
-    """Who caused what happens in ``frame``: the user's code, through whatever libraries; an import; or None of them.
+    """Return the cause of an event in ``frame``: the user's code, an import, or None.
 
-    None stands for the compiler, and for what the program reads by itself.
+    The user's code may act through libraries. None stands for the compiler, and for what the program reads by itself.
     """
     while frame is not None:
         file = frame.f_code.co_filename

@@ -34,7 +34,7 @@ from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.prepared import Prepared
 from mbsd.kinematics.steps import divisions
 from mbsd.model.mechanism import Model
-from mbsd.model.output_times import refuse_beyond_memory
+from mbsd.model.output_times import check_memory
 
 CHUNK = 64
 """Designs that a thread takes at once."""
@@ -122,7 +122,7 @@ class DesignSweeps:
         """Sweep designs whose numbers differ from the mechanism's own by ``values`` (n, moved) (m)."""
         m, grid, traces = self.m, self.grid, len(self.bodies)
         count, turned = len(values), len(self.turned)
-        refuse_beyond_memory(
+        check_memory(
             f"{m.name}: {count} designs at {len(grid)} times",
             count * (len(grid) * (2 * traces + turned) + self.groups.number.size),
             "Take fewer designs or steps at once",
@@ -279,7 +279,7 @@ def settle(
     if not batch.doubted.any():
         return
     rows = batch.doubted.copy()
-    _put(batch, rows, finer()(values[rows], threads))
+    _copy_rows(batch, rows, finer()(values[rows], threads))
     for row in np.flatnonzero(batch.doubted).tolist():
         try:
             q = _swept(sweeps, values[row])
@@ -287,10 +287,10 @@ def settle(
             batch.doubted[row] = False
             continue
         if q is not None:
-            _put_alone(sweeps, batch, row, values[row], q)
+            _fill_row(sweeps, batch, row, values[row], q)
 
 
-def _put(batch: Batch, rows: np.ndarray, others: Batch) -> None:
+def _copy_rows(batch: Batch, rows: np.ndarray, others: Batch) -> None:
     """Give some rows the results of ``others``."""
     for name, points in batch.points.items():
         points[rows] = others.points[name]
@@ -299,7 +299,7 @@ def _put(batch: Batch, rows: np.ndarray, others: Batch) -> None:
     batch.closes[rows], batch.doubted[rows] = others.closes, others.doubted
 
 
-def _put_alone(sweeps: DesignSweeps, batch: Batch, row: int, values: np.ndarray, q: np.ndarray) -> None:
+def _fill_row(sweeps: DesignSweeps, batch: Batch, row: int, values: np.ndarray, q: np.ndarray) -> None:
     """Give a row the traced points and angles of poses q (T, 3 nb)."""
     arms = sweeps.arms_of(values[None])[0]
     for points, body, (x, y) in zip(batch.points.values(), sweeps.bodies.tolist(), arms, strict=True):

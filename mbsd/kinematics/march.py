@@ -55,13 +55,13 @@ class March:
 
     def closely(self) -> tuple[np.ndarray, np.ndarray]:
         """Return times (N,) and poses (N, 3 nb) of all steps and seven times within each, by quintics."""
-        from mbsd.model.cams.profile import hermite
+        from mbsd.model.laws.numbers import hermite_coefficients
 
         times, (q, v, a) = self.steps.times, self._all
         if len(times) < 2:
             return times, q
         h, samples = np.diff(times), np.stack([q, v, a], axis=-1)
-        coefficients = hermite(h, samples[:-1], samples[1:])
+        coefficients = hermite_coefficients(h, samples[:-1], samples[1:])
         ahead = h[:, None] * np.arange(8) / 8
         poses = np.einsum("sxp,scp->sxc", ahead[..., None] ** np.arange(6), coefficients).reshape(-1, q.shape[1])
         inner = (times[:-1, None] + ahead).ravel()

@@ -18,7 +18,7 @@ from mbsd.arrays.states import columns_of, ones_of, with_states
 from mbsd.base.errors import SimulationError
 from mbsd.equations.laws import Laws
 from mbsd.equations.loads import tabulate_loads
-from mbsd.model.cams.profile import hermite
+from mbsd.model.laws.numbers import hermite_coefficients
 from mbsd.results.measured import measured, measured_rate
 
 TOLERANCE = 1e-9
@@ -74,7 +74,7 @@ class _Flow:
         self.wide, self.t = wide, t
         self.loads, self.laws = pack_loads(wide), laws
         samples = np.stack([q, v, a], axis=-1)
-        self.quintics = hermite(np.diff(t), samples[:-1], samples[1:])
+        self.quintics = hermite_coefficients(np.diff(t), samples[:-1], samples[1:])
         self.columns, self.width = columns_of(wide), q.shape[1]
         self.q, self.v, self.load = (np.zeros((1, len(wide.body_names) * 3)) for _ in range(3))
         self.time, self.power = np.zeros(1), np.zeros(1)

@@ -85,7 +85,7 @@ class Steps:
         knots = [law.knots(float(times[0]), float(times[-1])) for law in packed.motions]
         self.drives = packed.drives(self.times)
         if any(len(times_of) for times_of in knots):
-            self._put_knots(np.unique(np.concatenate(knots)))
+            self._insert_knots(np.unique(np.concatenate(knots)))
 
     @property
     def inserted(self) -> int:
@@ -104,7 +104,7 @@ class Steps:
         if not self._divisions_left:
             raise ModelError(self._without_end(index))
         self._divisions_left -= 1
-        self._put(np.array([index]), np.array([middle]))
+        self._insert(np.array([index]), np.array([middle]))
         return True
 
     def leave_out(self, start: float, end: float, more: np.ndarray) -> np.ndarray:
@@ -120,10 +120,10 @@ class Steps:
         self.wanted, self._shortest = self.wanted[keep], self._shortest[keep]
         more = more[(more < last) & ~np.isin(more, self.times)]
         if len(more) and len(self.times):
-            self._put(np.searchsorted(self.times, more), more)
+            self._insert(np.searchsorted(self.times, more), more)
         return left_out
 
-    def put_back(self, times: np.ndarray) -> np.ndarray:
+    def restore(self, times: np.ndarray) -> np.ndarray:
         """Put ``times`` (n,) that were asked for and left out back; returns before which steps they stand."""
         at = np.searchsorted(self.times, times)
         self.drives = np.insert(self.drives, at, self.packed.drives(times), axis=0)
@@ -140,8 +140,8 @@ class Steps:
         (value, _, _), (after, rate, _) = self.drives[index - 1 : index + 1, k + 1]
         return (
             f"{packed.name}: the sweep from t = {self.times[0]:.6g} s to {self.times[-1]:.6g} s was given up at t = "
-            f"{start:.9g} s: {self.inserted} steps were put between the {np.count_nonzero(self.wanted)} asked for, and "
-            f"the one from there to {end:.9g} s is doubted, too, in which driver '{packed.driver_names[k]}' goes from "
+            f"{start:.9g} s: {self.inserted} steps were put between the {np.count_nonzero(self.wanted)} asked for. "
+            f"The one from there to {end:.9g} s is doubted, too. In it driver '{packed.driver_names[k]}' goes from "
             f"{value:.6g} to {after:.6g} at a rate of {rate:.6g}. Its law shakes, or the motion passes one nearly "
             "singular pose after another: sweep a shorter time, smooth the law, or change a length."
         )
@@ -160,10 +160,10 @@ class Steps:
             at = np.repeat(np.arange(1, len(self.times)), parts - 1)
             first = np.cumsum(parts - 1) - (parts - 1)
             number = np.arange(len(at)) - np.repeat(first, parts - 1) + 1
-            self._put(at, self.times[at - 1] + h[at - 1] * number / parts[at - 1])
+            self._insert(at, self.times[at - 1] + h[at - 1] * number / parts[at - 1])
         return len(self.times) > count
 
-    def _put_knots(self, knots: np.ndarray) -> None:
+    def _insert_knots(self, knots: np.ndarray) -> None:
         """Keep knots at which a law is off the line of its step's ends: it may go and come back there."""
         knots = knots[~np.isin(knots, self.times) & (knots > self.times[0]) & (knots < self.times[-1])]
         if not len(knots):
@@ -178,9 +178,9 @@ class Steps:
         astray = np.abs(self.packed.drives(knots)[..., 0] - led) > ASTRAY * self.stride
         taken = astray.any(axis=1)
         if taken.any():
-            self._put(at[taken], knots[taken])
+            self._insert(at[taken], knots[taken])
 
-    def _put(self, at: np.ndarray, times: np.ndarray) -> None:
+    def _insert(self, at: np.ndarray, times: np.ndarray) -> None:
         self.drives = np.insert(self.drives, at, self.packed.drives(times), axis=0)
         self.wanted = np.insert(self.wanted, at, False)
         self._shortest = np.insert(self._shortest, at, self._shortest[at])

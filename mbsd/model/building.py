@@ -51,7 +51,7 @@ from mbsd.model.mechanism import Model, StartVelocity, name_of, new_name, number
 
 
 class Building(Model):
-    """Adds to a model, and refuses at once what is wrong, by name."""
+    """A model with methods that add entries, and raise an error at once for what is wrong, by name."""
 
     # -- joints --------------------------------------------------------------------------------------------------------
 
@@ -145,7 +145,9 @@ class Building(Model):
             self.starts[name] = start_given(self, name, degrees, (x, y))
 
     def start_moving(self, **velocities: float | Sequence[float]) -> None:
-        """Velocities at the start of a simulation: rad/s, or (vx, vy, omega) of the body's frame in m/s and rad/s.
+        """Give bodies velocities at the start of a simulation.
+
+        A velocity is in rad/s, or (vx, vy, omega) of the body's frame in m/s and rad/s.
 
         Bodies that are not named move as their joints make them, with the least kinetic energy. Where joints and
         drivers forbid a given value, it is changed and the simulation warns.
@@ -170,12 +172,13 @@ class Building(Model):
         frames: Body | Marker | Sequence[Body | Marker] = (),
         releases: str | Joint | Sequence[str | Joint] = (),
     ) -> Event:
-        """Monitor a scalar: ``value(t, moment)`` passes zero, rising (direction 1), falling (-1) or either (0).
+        """Monitor a scalar: an event is where ``value(t, moment)`` passes zero.
 
-        ``moment`` shows the motion now (mbsd/dynamics/events/moment.py). ``terminal`` ends the simulation there;
-        ``action`` is called with the moment and may change velocities and release joints. A scalar that is smooth is
-        found below zero however short a time it is there. One that has pulses is not seen between them: ``shortest``
-        (s) is how long the shortest thing in it lasts, and it is looked at twice as often.
+        It rises through zero with ``direction`` 1, falls with -1; 0 means both. ``moment`` shows the motion now
+        (mbsd/dynamics/events/moment.py). ``terminal`` ends the simulation there; ``action`` is called with the moment
+        and may change velocities and release joints. A scalar that is smooth is found below zero however short a time
+        it is there. One that has pulses is not seen between them: ``shortest`` (s) is how long the shortest thing in it
+        lasts, and it is looked at twice as often.
 
         With ``frames``, bodies and markers, the functions get numbers and may be compiled with numba.njit:
         ``value(t, q, v)``, with x, y, theta and their rates of each frame in turn (m, rad, m/s, rad/s; world axes).
@@ -202,7 +205,7 @@ class Building(Model):
         (kg), com (m) and inertia (kg m^2), of a bar its length (m), too, with which all that is at its end moves. The
         model is then the one that would have been built with these numbers: what was not given but follows from
         others, such as the inertia of a bar or static friction, follows the new ones, and None takes a number back.
-        Nothing is compiled anew. Raises ModelError, and changes nothing, for what that method refuses.
+        Nothing is compiled again. Raises ModelError where that method does, and then changes nothing.
         """
         from mbsd.model.change import change
 
@@ -230,8 +233,8 @@ def checked_event(
             raise ModelError(f"{event}: {what} is {shown(function)}; it must be a function")
         if not seen and type(function).__module__.startswith("numba."):
             raise ModelError(
-                f"{event}: {what} is compiled with numba, which knows no moment; say of which bodies and markers it "
-                "gets the numbers, frames=(arm, tip), and take them as value(t, q, v)"
+                f"{event}: {what} is compiled with numba, and compiled functions cannot take a Moment; name the bodies "
+                "and markers it needs, frames=(arm, tip), and take their numbers as value(t, q, v)"
             )
     if direction not in (-1, 0, 1):
         raise ModelError(f"{event}: direction is {shown(direction)}; it must be 1, -1 or 0")

@@ -1,9 +1,9 @@
 """Changes of numbers and laws of a mechanism in place, so that it is solved again without a rebuild.
 
-A joint, driver, force or contact is made anew by the method of its kind's name, from its own markers, what the user
-gave of numbers and laws, and the new ones; so what the method refuses stays refused, and what it derives from them is
-derived anew. Its place among the others stays too, and compiled code is used as it is. A body is made anew likewise,
-and the one that is there takes its numbers, as markers hold it.
+A joint, driver, force or contact is added again by the method of its kind, from its own markers, the numbers and laws
+that the user gave, and the new ones. So the method checks them again, and derives the others from them. The order of
+entries stays, and compiled code is used as it is. A body is rebuilt likewise, and the present one takes its numbers,
+because markers refer to it.
 
 The types of the arguments of the function that adds an entry say what they are:
 
@@ -99,7 +99,7 @@ def _change(m: Model, table: dict[str, Any], name: str, values: Mapping[str, Any
     assert add is not None
     also = old.kind.also if isinstance(old, Force) else {}
     values = {also.get(key, key): value for key, value in values.items()}
-    _refuse_others(m, f"{old.kind.name} '{name}'", values, _own(old))
+    _check_names(m, f"{old.kind.name} '{name}'", values, _own(old))
     if not values:
         return
     before = dict(table)
@@ -167,7 +167,7 @@ def given_body(body: Body) -> dict[str, Any]:
 
 def _change_body(m: Model, body: Body, values: Mapping[str, Any]) -> None:
     bar = body.length is not None
-    _refuse_others(m, f"body '{body.name}'", values, BAR if bar else BODY)
+    _check_names(m, f"body '{body.name}'", values, BAR if bar else BODY)
     new = (new_bar if bar else new_body)(m, body.name, **(given_body(body) | dict(values)))
     if body.length is not None and new.length is not None and new.length != body.length:
         _move_ends(m, body, body.length, new.length)
@@ -194,7 +194,7 @@ def _move_ends(m: Model, bar: Body, old: float, new: float) -> None:
         m.events[name] = event.moved(moved)
 
 
-def _refuse_others(m: Model, what: str, values: Mapping[str, Any], known: tuple[str, ...] | list[str]) -> None:
+def _check_names(m: Model, what: str, values: Mapping[str, Any], known: tuple[str, ...] | list[str]) -> None:
     others = [key for key in values if key not in known]
     if others:
         raise ModelError(f"{m.name}: {what}: {no_such('argument', others[0], known)}")

@@ -18,7 +18,7 @@ Contact of a point or disc with a terrain: a smooth curve through points, solid 
     s = arc + r (a - beta)          constraint `curve_rolling`; arc length and tangent angle beta at c(u)
 
 N pushes marker j to the left of the curve. Beyond its ends an open curve goes on straight. A disc touches where the
-curve is nearest to its centre, at one point; the model refuses discs that bends of the curve are too tight for.
+curve is nearest to its centre, at one point; a disc that is too large for a bend of the curve raises an error.
 
 Stops: ends of the travel of an angle or coordinate between two markers, as of a slider's guide.
 
@@ -40,18 +40,15 @@ Locked, it holds the angle at which it locked; it opens as soon as its torque wo
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
 
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
 from mbsd.model.body import Body, Marker
-from mbsd.model.entries import add_contact, contact_amounts_given, frictions_given, stop_given
+from mbsd.model.entries import add_contact, frictions_given, stop_given
 from mbsd.model.joint import ContactKind, Joint, register_contact
-from mbsd.model.mechanism import Model, connections, new_name, own_body, own_joint
-
-if TYPE_CHECKING:
-    import numpy as np
+from mbsd.model.mechanism import Model, connections, new_name, not_negative, own_body, own_joint
+from mbsd.model.plane_curves import check_crossing, check_curvature, checked_points, disc_numbers
 
 
 def _line_numbers(params):
@@ -86,7 +83,7 @@ def rigid_contact(
 
     ``friction`` is Coulomb's coefficient; ``static_friction``, the same if not given, holds what sticks.
     """
-    params = contact_amounts_given(m, name, radius=radius) | frictions_given(m, name, friction, static_friction)
+    params = not_negative(m, f"contact '{name}'", radius=radius) | frictions_given(m, name, friction, static_friction)
     return add_contact(m, LINE, name, line, point, restitution, params)
 
 
@@ -123,7 +120,7 @@ def rigid_discs(
     static_friction: float | None = None,
 ) -> Joint:
     """Keep discs of two radii (m) around two markers apart; ``inside``: j is inside the ring i."""
-    params = contact_amounts_given(m, name, radius_i=radius_i, radius_j=radius_j) | {"inside": bool(inside)}
+    params = not_negative(m, f"contact '{name}'", radius_i=radius_i, radius_j=radius_j) | {"inside": bool(inside)}
     params |= frictions_given(m, name, friction, static_friction)
     reach = radius_i - radius_j if inside else radius_i + radius_j
     if reach <= 0:
@@ -134,12 +131,6 @@ def rigid_discs(
     return add_contact(m, DISCS, name, i, j, restitution, params)
 
 
-def _terrain_numbers(params: Mapping[str, Any]) -> list[np.ndarray]:
-    from mbsd.model.plane_curves import disc_numbers
-
-    return disc_numbers(params, follows=False)
-
-
 TERRAIN = register_contact(
     ContactKind(
         "rigid_terrain",
@@ -147,7 +138,7 @@ TERRAIN = register_contact(
         example=lambda m, i, j: m.rigid_terrain(
             "example", i, j, [(-6, -3), (-4, -2.5), (-2, -2), (0, -2.3), (2, -2.5), (4, -1.8), (6, -1.9)], radius=0.2
         ),
-        numbers=_terrain_numbers,
+        numbers=lambda params: disc_numbers(params, follows=False),
         lengths=("radius", "points"),
         touching="curve",
     )
@@ -173,13 +164,11 @@ def rigid_terrain(
     its ends an open curve goes on straight. A ``closed`` one is solid within where its points go clockwise, so that
     what touches it stays outside, and solid outside where they go counter-clockwise.
     """
-    from mbsd.model.plane_curves import checked_points, refuse_crossing, refuse_tight
-
     what = f"{m.name}: contact '{name}'"
-    params = contact_amounts_given(m, name, radius=radius) | frictions_given(m, name, friction, static_friction)
+    params = not_negative(m, f"contact '{name}'", radius=radius) | frictions_given(m, name, friction, static_friction)
     plain = checked_points(what, points, closed)
-    refuse_crossing(what, plain, closed)
-    refuse_tight(what, plain, closed, params["radius"])
+    check_crossing(what, plain, closed)
+    check_curvature(what, plain, closed, params["radius"])
     params |= {"points": plain, "closed": bool(closed)}
     return add_contact(m, TERRAIN, name, terrain, point, restitution, params)
 
@@ -264,10 +253,9 @@ ROPE = register_contact(
 @ROPE.adds
 def rope(m: Model, name: str, i: Marker, j: Marker, length: float, restitution: float = 0.0) -> Joint:
     """The points of two markers stay no more than ``length`` (m) apart."""
-    params = contact_amounts_given(m, name, length=length)
-    if params["length"] <= 0:
+    if length <= 0:
         raise ModelError(f"{m.name}: rope '{name}' has length {length:g} m; it must be positive")
-    return add_contact(m, ROPE, name, i, j, restitution, params)
+    return add_contact(m, ROPE, name, i, j, restitution, {"length": length})
 
 
 ONE_WAY = register_contact(

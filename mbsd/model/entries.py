@@ -1,14 +1,7 @@
 """Entries of a model: joints, drivers, forces and contacts with their arguments checked.
 
-Adding a joint or driver: its checks, and its entry.
-
-Adding a force: its checks, and its entry. Forces in N, torques in N m, counter-clockwise positive.
-
-Impact losses of a contact by penalty: damping by its approach speed, from a restitution.
-
-c = A(e) / v_0 in N = k d^n (1 + c d'), with the A(e) of a damping model; see mbsd/model/forces/contact.py.
-
-Adding a unilateral contact: its checks, and its entry.
+Functions ``..._given`` check arguments and return them as params. The others enter a joint, force or contact. Forces
+are in N, torques in N m, counter-clockwise positive.
 """
 
 from __future__ import annotations
@@ -19,9 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mbsd.base.arguments import finite_number, number_pair
-from mbsd.base.errors import ModelError, ModelWarning
-from mbsd.base.names import no_such, shown
-from mbsd.base.warning import warn
+from mbsd.base.errors import ModelError
+from mbsd.base.names import shown
 from mbsd.model.body import Body, Marker
 from mbsd.model.force import Force, ForceKind
 from mbsd.model.joint import ContactKind, Joint, JointKind
@@ -41,7 +33,7 @@ from mbsd.model.mechanism import (
 from mbsd.model.teeth import FEWEST
 
 if TYPE_CHECKING:
-    from mbsd.model.cams.profile import CamProfile
+    pass
 
 
 Limits = Sequence[float | None] | None
@@ -79,28 +71,6 @@ def join(m: Model, kind: JointKind, name: str, i: Marker, j: Marker, law: Law | 
     joint = Joint(kind, name, i, j, params, motion)
     (m.drivers if kind.driven else m.joints)[name] = joint
     return joint
-
-
-def cam_given(m: Model, name: str, profile: CamProfile | Mapping[str, Any], flat: bool) -> dict[str, Any]:
-    """Plain data of a cam for this kind of follower; warns of an undercut. Raises ModelError."""
-    from mbsd.model.cams.followers import cam_from
-    from mbsd.model.cams.profile import CamProfile
-
-    if not isinstance(profile, CamProfile):
-        if not isinstance(profile, Mapping):
-            raise ModelError(f"{m.name}: joint '{name}' needs a profile from mbsd.cams, got {shown(profile)}")
-        try:
-            profile = cam_from(profile)
-        except ModelError as error:
-            raise ModelError(f"{m.name}: joint '{name}': {error}") from error
-    if profile.flat != flat:
-        raise ModelError(
-            f"{m.name}: joint '{name}' is {'cam_flat' if flat else 'cam_roller'}, but its profile is for the "
-            f"follower '{profile.follower}'; use {'cam_roller' if flat else 'cam_flat'}"
-        )
-    if profile.undercut:
-        warn(f"{m.name}: joint '{name}': {profile.problems[0]}", ModelWarning)
-    return profile.data
 
 
 def wheels_given(
@@ -174,12 +144,19 @@ def amounts_given(m: Model, name: str, **values: float) -> dict[str, Any]:
     return not_negative(m, f"force '{name}'", **values)
 
 
-def above_zero(m: Model, name: str, what: str, value: float) -> float:
-    """A number above zero. Raises ModelError."""
-    value = number_given(m, f"force '{name}': {what}", value)
-    if value <= 0:
-        raise ModelError(f"{m.name}: force '{name}': {what} is {value:g}; it must be positive")
-    return value
+def above_zero(m: Model, name: str, **values: float | None) -> dict[str, Any]:
+    """Return numbers of a force that must be positive; None stays None. Raises ModelError."""
+    for what, value in values.items():
+        if value is not None and value <= 0:
+            raise ModelError(f"{m.name}: force '{name}': {what} is {value:g}; it must be positive")
+    return values
+
+
+def exponent_given(m: Model, name: str, exponent: float) -> dict[str, Any]:
+    """Return the exponent of a gas or of a contact, which is at least 1. Raises ModelError."""
+    if exponent < 1.0:
+        raise ModelError(f"{m.name}: force '{name}': exponent is {exponent:g}; it must be 1 or more")
+    return {"exponent": exponent}
 
 
 def law_given(m: Model, name: str, law: Any, of: str) -> dict[str, Any]:
@@ -228,60 +205,15 @@ def curves_given(m: Model, name: str, **curves: Curve | None) -> dict[str, Curve
     return out
 
 
-MODELS = {
-    "hunt_crossley": lambda e: 1.5 * (1.0 - e),
-    "lankarani_nikravesh": lambda e: 0.75 * (1.0 - e * e),
-    "flores": lambda e: 1.6 * (1.0 - e) / e,
-}
-"""A(e) by the name of the damping model."""
-
-
-def loss_of(params: Mapping[str, Any]) -> float:
-    """A(e) of a force's params, 0 without a restitution."""
-    restitution = params["restitution"]
-    return 0.0 if restitution is None else MODELS[params["damping_model"]](restitution)
-
-
-def restitution_given(
-    m: Model, name: str, damping: float, restitution: float | None, damping_model: str, least_approach: float
-) -> dict[str, float | str | None]:
-    """Params of damping by approach speed. Raises ModelError."""
-    what = f"{m.name}: force '{name}'"
-    if damping_model not in MODELS:
-        raise ModelError(f"{what}: {no_such('damping_model', damping_model, MODELS)}")
-    least_approach = above_zero(m, name, "least_approach", least_approach)
-    if restitution is not None:
-        restitution = number_given(m, f"force '{name}': restitution", restitution)
-        if not 0.0 <= restitution <= 1.0:
-            raise ModelError(f"{what}: restitution is {restitution:g}; it must be within 0 .. 1")
-        if restitution == 0.0 and damping_model == "flores":
-            raise ModelError(
-                f"{what}: restitution is 0, for which the damping of 'flores' is infinite; give a little more, or take "
-                "damping_model='lankarani_nikravesh'"
-            )
-        if damping:
-            raise ModelError(
-                f"{what}: damping is {damping:g} s/m and restitution {restitution:g}; give one of them, as both say "
-                "how much an impact loses"
-            )
-    return {"restitution": restitution, "damping_model": damping_model, "least_approach": least_approach}
-
-
 def stop_given(m: Model, name: str, at: float, upper: bool) -> dict[str, Any]:
     """Params of a stop. Raises ModelError."""
-    at = number_given(m, f"stop '{name}': at", at)
-    return {"at": at, "upper": bool(upper)}
-
-
-def contact_amounts_given(m: Model, name: str, **values: float) -> dict[str, Any]:
-    """Numbers that may not be negative. Raises ModelError."""
-    return not_negative(m, f"contact '{name}'", **values)
+    return {"at": number_given(m, f"stop '{name}': at", at), "upper": bool(upper)}
 
 
 def frictions_given(m: Model, name: str, friction: float, static_friction: float | None) -> dict[str, Any]:
     """Params of Coulomb friction: sliding, and sticking where given. Raises ModelError."""
     static = friction if static_friction is None else static_friction
-    out = contact_amounts_given(m, name, friction=friction, static_friction=static)
+    out = not_negative(m, f"contact '{name}'", friction=friction, static_friction=static)
     if out["static_friction"] < out["friction"] or (out["friction"] == 0.0 and static > 0.0):
         raise ModelError(
             f"{m.name}: contact '{name}': static_friction is {static:g}, friction {friction:g}; static friction "

@@ -97,23 +97,23 @@ def turning(t: float, q: Any, v: Any) -> float:
 
 def angle_reaches(body: Body, angle: float) -> Callable[[float, Any], float]:
     """Event function: the angle of a body (rad, counted over turns) less ``angle``."""
-    _refuse_other("angle_reaches", body, Body)
+    _check_type("angle_reaches", body, Body)
     return Reaching(turned, (body.origin,), finite_number("angle_reaches: angle", angle))
 
 
 def distance_reaches(i: Marker, j: Marker, length: float) -> Callable[[float, Any], float]:
     """Event function: the distance of two points (m) less ``length``."""
-    _refuse_other("distance_reaches", i, Marker)
-    _refuse_other("distance_reaches", j, Marker)
+    _check_type("distance_reaches", i, Marker)
+    _check_type("distance_reaches", j, Marker)
     return Reaching(distance, (i, j), finite_number("distance_reaches: length", length))
 
 
 def speed_reaches(body: Body, omega: float) -> Callable[[float, Any], float]:
     """Event function: the angular velocity of a body (rad/s) less ``omega``."""
-    _refuse_other("speed_reaches", body, Body)
+    _check_type("speed_reaches", body, Body)
     return Reaching(turning, (body.origin,), finite_number("speed_reaches: omega", omega))
 
 
-def _refuse_other(what: str, value: object, wanted: type) -> None:
+def _check_type(what: str, value: object, wanted: type) -> None:
     if not isinstance(value, wanted):
         raise ModelError(f"{what} needs a {wanted.__name__.lower()}, got {shown(value)}")

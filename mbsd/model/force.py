@@ -39,7 +39,7 @@ from mbsd.base.codes import MOST_STATES, TURN
 from mbsd.base.names import Suggesting
 from mbsd.base.pickled import ByName, WithFunctions
 from mbsd.model.body import Marker
-from mbsd.model.joint import refuse_unknown_look
+from mbsd.model.joint import check_look
 from mbsd.model.laws import Motion
 from mbsd.model.laws.curve import Curve
 
@@ -240,7 +240,7 @@ def register_force(kind: ForceKind) -> ForceKind:
     """Register a kind; raises ValueError if the name is taken, the example missing, states too many."""
     if not callable(kind.example):
         raise ValueError(f"{kind.name}: an example is missing; the registry test needs one")
-    refuse_unknown_look(kind.name, kind.look)
+    check_look(kind.name, kind.look)
     if kind.states is not None and (kind.along is None or not 0 < len(kind.states.names) <= MOST_STATES):
         raise ValueError(f"{kind.name}: a force with states acts along one element, and has {MOST_STATES} at most")
     if kind.name in FORCE_KINDS:

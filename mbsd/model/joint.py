@@ -154,13 +154,6 @@ class JointKind(ByName):
         return sum(ROWS[name] for name in self.constraints)
 
 
-def cam_numbers(profile: Mapping[str, Any]) -> np.ndarray:
-    """Numbers of the constraint of a cam, from its plain data."""
-    from mbsd.model.cams.followers import cam_from
-
-    return cam_from(profile).numbers
-
-
 KINDS: dict[str, JointKind] = {}
 
 
@@ -175,7 +168,7 @@ def register_joint(kind: JointKind) -> JointKind:
         raise ValueError(
             f"{kind.name}: touching is {kind.touching!r}; it must be one of {', '.join(TOUCHING[1:])}, or empty"
         )
-    refuse_unknown_look(kind.name, kind.look)
+    check_look(kind.name, kind.look)
     if kind.name in KINDS:
         raise ValueError(f"{kind.name}: registered twice")
     KINDS[kind.name] = kind
@@ -213,7 +206,7 @@ class Joint(Suggesting, WithFunctions):
 LOOKS = ("", "band", "roller", "captive", "coil", "cylinder", "spiral", "cord")
 
 
-def refuse_unknown_look(name: str, look: str) -> None:
+def check_look(name: str, look: str) -> None:
     """Raise ValueError, naming the kind ``name``, unless ``look`` is one of :data:`LOOKS`."""
     if look not in LOOKS:
         raise ValueError(f"{name}: look is {look!r}; it must be one of {', '.join(LOOKS[1:])}, or empty")
@@ -239,7 +232,7 @@ def register_contact(kind: ContactKind) -> ContactKind:
     """Register a kind; raises ValueError if its name is taken or a constraint is not of relative pose."""
     if not kind.constraints or any(name not in SPECIALS or ROWS[name] != 1 for name in kind.constraints):
         raise ValueError(f"{kind.name}: constraints {kind.constraints}; there are {', '.join(SPECIALS)}")
-    refuse_unknown_look(kind.name, kind.look)
+    check_look(kind.name, kind.look)
     if kind.name in CONTACT_KINDS:
         raise ValueError(f"{kind.name}: registered twice")
     CONTACT_KINDS[kind.name] = kind

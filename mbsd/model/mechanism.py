@@ -298,11 +298,11 @@ MOST_DEGREES = 1e9
 
 
 def start_given(m: Model, name: str, degrees: float, place: tuple[float, float] | None = None) -> Start:
-    """A rough pose. Raises ModelError for an angle whose digits do not say where in its turn it is."""
+    """Return a rough pose. Raises ModelError for an angle too large to resolve a position within the turn."""
     if abs(degrees) > MOST_DEGREES:
         raise ModelError(
-            f"{m.name}: start of '{name}' is {degrees:g} degrees, an angle of which rounding leaves nothing that says "
-            f"where in its turn '{name}' is; give {MOST_DEGREES:g} at most, such as what is left of whole turns"
+            f"{m.name}: start of '{name}' is {degrees:g} degrees, too large to resolve a position within the turn; "
+            f"give {MOST_DEGREES:g} at most: subtract whole turns"
         )
     return Start(math.radians(degrees), place)
 

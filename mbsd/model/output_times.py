@@ -27,7 +27,7 @@ def rising_times(m: Model, times: Sequence[float] | np.ndarray, least: int) -> n
 
     Raises ModelError unless it is a list of rising finite numbers.
     """
-    refuse_too_many(m, _length(times))  # before a copy is made
+    check_count(m, _length(times))  # before a copy is made
     grid = number_array(f"{m.name}: times", times)
     if grid.ndim != 1 or len(grid) < least:
         some = "two or more" if least == 2 else "one or more"
@@ -49,7 +49,7 @@ def rising_times(m: Model, times: Sequence[float] | np.ndarray, least: int) -> n
 def _length(times: object) -> int:
     try:
         return len(times)  # pyright: ignore[reportArgumentType]
-    except Exception:  # what is no list is refused with a better word
+    except Exception:  # number_array() names a value that is no list
         return 0
 
 
@@ -61,19 +61,17 @@ def equal_times(m: Model, duration: float, steps: int) -> np.ndarray:
         raise ModelError(f"{m.name}: duration is {duration} s; it must be positive")
     if not SHORTEST <= duration <= LONGEST:
         raise ModelError(f"{m.name}: duration is {duration:g} s; it must be within {SHORTEST:g} .. {LONGEST:g} s")
-    refuse_too_many(m, steps + 1)
+    check_count(m, steps + 1)
     grid = np.arange(steps + 1) * (duration / steps)
     grid[-1] = duration
     return grid
 
 
-def refuse_too_many(m: Model, count: int) -> None:
+def check_count(m: Model, count: int) -> None:
     """Raise ModelError where results at so many times do not fit into the memory of this machine."""
     joints = len(m.joints) + len(m.drivers) + len(m.contacts)
     numbers = 9 * len(m.bodies) + 3 * joints + 3 * len(m.drivers) + 8
-    refuse_beyond_memory(
-        f"{m.name}: results at {count:.6g} times", COPIES * numbers * count, "Take fewer steps or times"
-    )
+    check_memory(f"{m.name}: results at {count:.6g} times", COPIES * numbers * count, "Take fewer steps or times")
 
 
 @cache
@@ -82,7 +80,7 @@ def _memory() -> int:
     return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
 
 
-def refuse_beyond_memory(what: str, numbers: int, remedy: str) -> None:
+def check_memory(what: str, numbers: int, remedy: str) -> None:
     """Raise ModelError where so many numbers of 8 bytes are more than the memory of this machine."""
     memory = _memory()
     if 8 * numbers > memory:

@@ -320,7 +320,7 @@ def checked_points(what: str, points: object, closed: bool) -> list[list[float]]
     return array.tolist()
 
 
-def refuse_crossing(what: str, points: list[list[float]], closed: bool) -> None:
+def check_crossing(what: str, points: list[list[float]], closed: bool) -> None:
     """Raise ModelError for a curve that crosses itself or its continuation: no side of it is free."""
     pieces = curve_pieces(np.array(points), closed)
     places = crossings(*pieces, closed, 0.0, continued=True)
@@ -337,7 +337,7 @@ def refuse_crossing(what: str, points: list[list[float]], closed: bool) -> None:
         )
 
 
-def refuse_tight(what: str, points: list[list[float]], closed: bool, radius: float) -> None:
+def check_curvature(what: str, points: list[list[float]], closed: bool, radius: float) -> None:
     """Raise ModelError if a curve bends to the left too tightly for a disc of ``radius`` (m).
 
     The disc would touch twice.

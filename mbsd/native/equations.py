@@ -57,7 +57,7 @@ class NativeEquations:
         _refuse(m)
         self.model = m
         self.ready: PreparedDynamics = prepare_dynamics(m, start, end, contacts=True)
-        _refuse_prepared(self.ready)
+        _check_prepared(self.ready)
         self.tolerance = tolerance
         self.run = Run(self.ready, DOP853, tolerance, end - start, end - start, {}, REFERENCE)
         self.state: State = self.ready.begun(np.array([start]))[0]
@@ -156,7 +156,7 @@ def _refuse(m: Model) -> None:
         )
 
 
-def _refuse_prepared(ready: PreparedDynamics) -> None:
+def _check_prepared(ready: PreparedDynamics) -> None:
     packed = ready.packed
     for name in [*(contact.name for contact in ready.switches.contacts), *(stick.name for stick in ready.sticks)]:
         raise ModelError(

@@ -1,4 +1,4 @@
-"""Arguments of kernels as a table of machine words and one block of memory, for a caller in another language.
+"""Arguments of kernels as a table of machine words and a block of memory, for other languages.
 
 Each leaf takes consecutive words of 8 bytes: a number takes one, an array the address of its first element, its shape
 and its strides in bytes. Named tuples are their fields one after another. The block has the bytes of all arrays at the

@@ -1,4 +1,4 @@
-"""Views of the gas behind a piston, with the work of each cycle, and of the oil in a hydraulic cylinder.
+"""Views of the gas behind a piston and of the oil in a hydraulic cylinder, with their work.
 
     W = int (p - p_outside) dV over a cycle        indicated work;  over the displaced volume: mean effective pressure
 
@@ -24,8 +24,8 @@ import numpy as np
 
 from mbsd.arrays.laws import compiled_laws, law_values
 from mbsd.arrays.states import own_states
-from mbsd.model.cams.profile import hermite
 from mbsd.model.force import Chamber, CrankCycle, Force
+from mbsd.model.laws.numbers import hermite_coefficients
 from mbsd.results.force_view import ForceView
 from mbsd.results.measured import Moved
 
@@ -102,7 +102,7 @@ def _works(moved: Moved, view: ForceView, cycle: CrankCycle, power: Callable[[Mo
         return np.zeros(0)
     left = np.flatnonzero(np.diff(moved.t) > 0.0)
     samples = np.stack([moved.q, moved.v, moved.a], axis=-1)
-    quintics = hermite(np.diff(moved.t)[left], samples[left], samples[left + 1])
+    quintics = hermite_coefficients(np.diff(moved.t)[left], samples[left], samples[left + 1])
     begins, lasts = moved.t[left], float(moved.t[left[-1] + 1])
 
     def states(at: np.ndarray) -> Moved:

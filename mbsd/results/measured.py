@@ -1,4 +1,4 @@
-"""Values that forces measure along a motion: the scalar of an element, gaps of discs and journals, depths of flanks."""
+"""Values that forces measure along a motion: lengths and angles of elements, gaps, depths."""
 
 from __future__ import annotations
 

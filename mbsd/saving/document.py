@@ -88,7 +88,7 @@ class Entry:
         except ModelError as error:
             raise ModelError(f"{self.where}: {error}") from error
 
-    def refuse_others(self, *known: str) -> None:
+    def check_fields(self, *known: str) -> None:
         """Raise ModelError for a field that is not one of ``known``."""
         others = [key for key in self.data if key not in known]
         if others:
@@ -124,7 +124,7 @@ def build(written: Mapping[str, Any], make: type[M], where: str = "model") -> M:
     ``where`` is the file.
     """
     top = Entry(written, where)
-    _refuse_other_version(top)
+    _check_version(top)
     m = top.within(lambda: make(top.text("name"), top.numbers("gravity", 2)))
     for name, entry in top.entries("bodies"):
         _read_body(m, name, entry)
@@ -141,7 +141,7 @@ def build(written: Mapping[str, Any], make: type[M], where: str = "model") -> M:
         m.starts[name] = Start(*_read_state(m, name, entry, "angle"))
     for name, entry in top.entries("velocities"):
         m.velocities[name] = StartVelocity(*_read_state(m, name, entry, "omega"))
-    top.refuse_others("schema", "schema_version", *(field.name for field in fields(make)))
+    top.check_fields("schema", "schema_version", *(field.name for field in fields(make)))
     return m
 
 
@@ -201,7 +201,7 @@ def _state(state: Any) -> dict[str, Any]:
 # -- reading ----------------------------------------------------------------------------------------------------
 
 
-def _refuse_other_version(top: Entry) -> None:
+def _check_version(top: Entry) -> None:
     for key, wanted in (("schema", SCHEMA), ("schema_version", SCHEMA_VERSION)):
         given = top.get(key)
         if given != wanted or isinstance(given, bool):
@@ -218,7 +218,7 @@ def _read_body(m: Model, name: str, entry: Entry) -> None:
     com = None if bar and entry.is_null("com") else entry.numbers("com", 2)
     z = None if entry.get("z") is None else entry.number("z")
     products = (0.0, 0.0) if entry.get("products") is None else entry.numbers("products", 2)
-    entry.refuse_others("mass", "com", "inertia", "length", "z", "products")
+    entry.check_fields("mass", "com", "inertia", "length", "z", "products")
     if bar:
         entry.within(lambda: m.bar(name, entry.number("length"), mass, com, inertia, z=z, products=products))
     else:
@@ -229,7 +229,7 @@ def _read_body(m: Model, name: str, entry: Entry) -> None:
 
 def _read_marker(m: Model, entry: Entry) -> Marker:
     body = entry.within(lambda: m.known_body(entry.text("body")))
-    entry.refuse_others("body", "x", "y", "angle", "z")
+    entry.check_fields("body", "x", "y", "angle", "z")
     z = None if entry.get("z") is None else entry.number("z")
     return body.at(entry.number("x"), entry.number("y"), entry.number("angle"), z)
 
@@ -237,13 +237,13 @@ def _read_marker(m: Model, entry: Entry) -> Marker:
 def _read_state(m: Model, name: str, entry: Entry, turn: str) -> tuple[float, tuple[float, float] | None]:
     """A start pose or velocity: about the angle, and of the body's frame if given."""
     entry.within(lambda: m.known_body(name))
-    entry.refuse_others(turn, "place")
+    entry.check_fields(turn, "place")
     return entry.number(turn), entry.numbers("place", 2) if entry.get("place") is not None else None
 
 
 def _read_joint(m: Model, part: str, name: str, entry: Entry) -> None:
     kind = _kind(entry, part[:-1], {key: kind for key, kind in KINDS.items() if kind.driven == (part == "drivers")})
-    entry.refuse_others("kind", "i", "j", "params", *(["law"] if kind.driven else []))
+    entry.check_fields("kind", "i", "j", "params", *(["law"] if kind.driven else []))
     add = _adds(kind)
     named = _params(m, entry)
     if kind.driven:
@@ -253,14 +253,14 @@ def _read_joint(m: Model, part: str, name: str, entry: Entry) -> None:
 
 def _read_force(m: Model, name: str, entry: Entry) -> None:
     kind = _kind(entry, "force", FORCE_KINDS)
-    entry.refuse_others("kind", "i", "j", "params", "laws")
+    entry.check_fields("kind", "i", "j", "params", "laws")
     laws = {key: law_from(law.data, law.where) for key, law in entry.entries("laws")}
     _add(m, _adds(kind), name, entry, _params(m, entry) | laws)
 
 
 def _read_contact(m: Model, name: str, entry: Entry) -> None:
     kind = _kind(entry, "contact", CONTACT_KINDS)
-    entry.refuse_others("kind", "i", "j", "params")
+    entry.check_fields("kind", "i", "j", "params")
     _add(m, _adds(kind), name, entry, _params(m, entry))
 
 

@@ -20,7 +20,7 @@ DEEPEST = 30
 def save(m: Model, path: str | os.PathLike[str]) -> None:
     """See :meth:`mbsd.mechanism.Mechanism.save`."""
     written = document(m)
-    _refuse_non_finite(written, m.name)
+    _check_finite(written, m.name)
     content = json.dumps(written, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
     write_whole(path, content.encode())
 
@@ -38,7 +38,7 @@ def load(path: str | os.PathLike[str], make: type[M]) -> M:
         raise _too_deep(path) from error
     except ValueError as error:
         raise ModelError(f"{path}: not a whole JSON file ({error}); save the model again") from error
-    _refuse_non_finite(written, f"{path}: ")
+    _check_finite(written, f"{path}: ")
     return build(written, make, f"{path}: model")
 
 
@@ -57,13 +57,13 @@ def _too_deep(path: object) -> ModelError:
     )
 
 
-def _refuse_non_finite(value: Any, where: str, level: int = 0) -> None:
+def _check_finite(value: Any, where: str, level: int = 0) -> None:
     if level > DEEPEST:
         raise _too_deep(where.partition(": ")[0])
     if isinstance(value, float) and not math.isfinite(value):
         raise ModelError(f"{where} is {value}; every number must be finite")
     inside = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
     for key, item in inside:
-        _refuse_non_finite(
+        _check_finite(
             item, f"{where}[{key}]" if isinstance(key, int) else f"{where}.{key}".replace(": .", ": "), level + 1
         )

@@ -61,7 +61,7 @@ def example(kind: ForceKind, seed: int = 0, to_ground: bool = False) -> tuple[Me
     m = Mechanism("example")
     first = m.ground if to_ground else m.body("first", 1.0, list(random.normal(size=2)), 1.0)
     second = m.body("second", 1.0, list(random.normal(size=2)), 1.0)
-    assert kind.example is not None, "register() refuses a kind without one"
+    assert kind.example is not None, "register_force() raises an error without one"
     kind.example(m, first.at(*random.normal(size=3)), second.at(*random.normal(size=3)))
     if [force.kind for force in m.forces.values()] != [kind]:
         raise AssertionError(f"{kind.name}: its example must add one '{kind.name}' and no other force")

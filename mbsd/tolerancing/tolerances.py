@@ -20,7 +20,7 @@ import numpy as np
 from mbsd.base.arguments import checked, finite_number, users_progress, whole_number
 from mbsd.base.errors import ModelError
 from mbsd.model.mechanism import Model
-from mbsd.model.output_times import refuse_beyond_memory
+from mbsd.model.output_times import check_memory
 from mbsd.tolerancing.dimensions.dimension import Dimension
 from mbsd.tolerancing.machines.one_by_one import Machines
 from mbsd.tolerancing.machines.results import named_after
@@ -136,7 +136,7 @@ def asked(
     _refuse_corners(owner, corners, len(task.dimensions))
     width = sum(len(dimension.columns) for dimension in task.dimensions)
     numbers = 5 * n * (1 + width) + sobol * 2 ** _power(n) * (5 * width + 2 + len(task.dimensions))
-    refuse_beyond_memory(f"{owner}: tolerances: {n} machines", numbers, "Take fewer")
+    check_memory(f"{owner}: tolerances: {n} machines", numbers, "Take fewer")
     quantity = named_after(machine if result is None else result)
     return partial(_carried_out, task, quantity, n, seed, within_limits, sobol, corners, confidence, progress)
 

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import sys
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mechanisms.stages.loading import loading
-from mechanisms.stages.loading.inputs import Inputs, observed, recording, sources_state
+from mechanisms.stages.loading.inputs import Inputs, observed, sources_state
 from mechanisms.stages.parts.stage import current_parts
 from mechanisms.stages.solve import solving
 from mechanisms.stages.solve.skeleton_file import body_colours, main_material
 from shared.stage import console
 from shared.stage.errors import UserError, did_you_mean
 from shared.stage.files import sources_hash
-from shared.stage.paths import ROOT, Out, mechanism_file
+from shared.stage.paths import ROOT, Out
 from shared.stage.stages import Stage, key_of, versions
 
 if TYPE_CHECKING:
@@ -30,7 +29,7 @@ SUFFIXES = (".mp4", ".gif")
 _STAGE = (
     "animate",
     "loading/loading",
-    *(f"solve/{name}" for name in ("solving", "refinement", "masses", "skeleton_file")),
+    *(f"solve/{name}" for name in ("solving", "masses", "skeleton_file")),
 )
 SOURCES = [ROOT / "mechanisms" / "stages" / f"{name}.py" for name in _STAGE]
 
@@ -44,14 +43,7 @@ def run(name: str, view: str = "") -> None:
     if not stale:
         console.say("animate", f"{name}: nothing to do")
         return
-    from mechanisms.stages.loading.inputs import loaded_inputs
-
-    before = set(sys.modules)
-    with recording() as recorder:
-        solution = solve(name, parts)
-    loaded = loaded_inputs(mechanism_file(name), loading.package_of(name), before)
-    loaded.sources.pop("mbsd", None)  # it counts anyway
-    inputs = loaded.joined(recorder.inputs())
+    solution, inputs = loading.recorded(name, lambda: solve(name, parts))
     for words in stale:
         paths = _paths(out, words)
         for path in paths:
@@ -81,8 +73,7 @@ def solve(name: str, parts: Parts | None) -> Solution:
     """Return the motion; says which masses are those of the parts, and which are estimated. Raises UserError."""
     from mechanisms.stages.solve.masses import give_masses_aloud
 
-    module, p = loading.load(name, "mechanism"), loading.params(name)
-    m = solving.build(name, module, p)
+    m, module, p = solving.model_of(name)
     give_masses_aloud("animate", name, m, parts)
     return solving.motion_of(name, module, m, p)
 

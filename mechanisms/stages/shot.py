@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import os
-import sys
 from typing import get_args
 
 import msgspec
 
-from mechanisms.stages.loading.inputs import Inputs, observed, recording
-from mechanisms.stages.loading.loading import has, load, package_of
+from mechanisms.stages.loading.inputs import Inputs, observed
+from mechanisms.stages.loading.loading import has, load, recorded
 from shared.contract.shot import LookName, Names, Shot, refuse_unknown, refuse_unsound, write_shot
 from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash
-from shared.stage.paths import ROOT, Out, mechanism_file, shown_file
+from shared.stage.paths import ROOT, Out, shown_file
 from shared.stage.stages import Stage, key_of
 
 SOURCES = [ROOT / "shared" / name for name in ("contract/shot.py", "contract/parts.py", "stage/jsonfile.py")]
@@ -37,13 +36,7 @@ def run(name: str) -> None:
     if _is_fresh(out, names):
         say("shot", f"{out.name}: nothing to do")
         return
-    from mechanisms.stages.loading.inputs import loaded_inputs
-
-    before = set(sys.modules)
-    with recording() as recorder:
-        shot = load(out.name, "shot").shot
-    loaded = loaded_inputs(mechanism_file(out.name, "shot"), package_of(out.name), before)
-    inputs = loaded.joined(recorder.inputs())
+    shot, inputs = recorded(out.name, lambda: load(out.name, "shot").shot, ("shot",), solver=True)
     file = shown_file(out.name, "shot")
     if not isinstance(shot, Shot):
         raise UserError(f"{out.name}: {file}: 'shot' is a {type(shot).__name__}; write shot = Shot(...)")

@@ -155,8 +155,6 @@ def _client() -> AbstractContextManager[Any]:
 
 
 def _built(name: str, module: Any, p: Any, **point: Any) -> Mechanism:
-    import dataclasses
-
     from mechanisms.stages.solve.masses import give_masses
 
     m = module.build(dataclasses.replace(p, **point))

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import copy
-import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mechanisms.stages.loading import loading
-from mechanisms.stages.loading.inputs import Inputs, observed, recording, sources_state
+from mechanisms.stages.loading.inputs import Inputs, observed, sources_state
 from mechanisms.stages.loading.loading import refuse_arguments
 from mechanisms.stages.parts.stage import current_parts
 from mechanisms.stages.solve import solving
 from shared.stage import console
 from shared.stage.errors import UserError, did_you_mean
 from shared.stage.files import sources_hash, write_bytes
-from shared.stage.paths import NAME, ROOT, Out, is_single_file, known_name, mechanism_file, shown_file
+from shared.stage.paths import NAME, ROOT, Out, is_single_file, known_name, shown_file
 from shared.stage.stages import Stage, key_of, versions
 
 if TYPE_CHECKING:
@@ -166,7 +165,7 @@ def run(name: str) -> None:
     if known and files and Stage(out, "tolerances", _key(parts, known), files).is_fresh():
         console.say("tolerances", f"{name}: nothing to do: {_folder(out) / 'summary.md'}")
         return
-    results, inputs = _found(name, parts)
+    results, inputs = _computed(name, parts)
     written = _write(out, results)
     for file in set(files) - set(written):
         file.unlink(missing_ok=True)
@@ -192,33 +191,27 @@ def _key(parts: Parts | None, inputs: Inputs) -> str:
     return key_of(*sources, masses, versions(*PACKAGES), inputs.digest())
 
 
-def _found(name: str, parts: Parts | None) -> tuple[dict[str, Tolerances], Inputs]:
+def _computed(name: str, parts: Parts | None) -> tuple[dict[str, Tolerances], Inputs]:
     """Return all results, after all were checked, and what they were made of."""
     from mbsd import MechanismError
-    from mechanisms.stages.loading.inputs import loaded_inputs
 
-    before = set(sys.modules)
-    results: dict[str, Tolerances] = {}
-    with recording() as recorder:
-        m, p = _built(name, parts), loading.params(name)
-        for result, find in wished_results(name, m, p).items():
+    def compute() -> dict[str, Tolerances]:
+        results: dict[str, Tolerances] = {}
+        for result, find in wished_results(name, _built(name, parts), loading.params(name)).items():
             try:
                 with loading.author_code(name), solving.model_warnings_said():
                     results[result] = find()
             except MechanismError as error:
                 raise UserError(f"{shown_file(name, 'tolerances')}: '{result}': {error}") from error
-    inputs = recorder.inputs()
-    for file in ("tolerances", "mechanism"):
-        loaded = loaded_inputs(mechanism_file(name, file), loading.package_of(name), before)
-        loaded.sources.pop("mbsd", None)  # it counts anyway
-        inputs = loaded.joined(inputs)
-    return results, inputs
+        return results
+
+    return loading.recorded(name, compute, ("tolerances", "mechanism"))
 
 
 def _built(name: str, parts: Parts | None) -> Mechanism:
     from mechanisms.stages.solve.masses import give_masses_aloud
 
-    m = solving.build(name, loading.load(name, "mechanism"), loading.params(name))
+    m, _, _ = solving.model_of(name)
     give_masses_aloud("tolerances", name, m, parts)
     return m
 

@@ -222,8 +222,8 @@ class Diagnostics(Strict, kw_only=True):
 class Motion(Strict, kw_only=True):
     """Motion of one mechanism: data.json.
 
-    Version 2 did not say where things act, in which units and how they look (older.py); version 1 had no forces and
-    contacts, and less of the rest.
+    Version 2 did not say where things act, in which units and how they look; version 1 had no forces and contacts, and
+    less of the rest.
     """
 
     schema: Literal["mbsd.motion"] = "mbsd.motion"

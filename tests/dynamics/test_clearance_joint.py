@@ -10,7 +10,7 @@ import pytest
 
 from mbsd import AssemblyError, Mechanism, MobilityError, ModelError, SimulationError, constant_rate, polynomial
 from mbsd.measures import final
-from mbsd.model.entries import MODELS
+from mbsd.model.forces.contact import DAMPING_MODELS
 from mbsd.results.force_view import ForceView
 from tools.models.clearance_slider_crank import CRANK, RADIUS, ROD, TURN, reference, slider_crank
 
@@ -95,12 +95,12 @@ def ball(**joint: Any) -> Mechanism:
     return m
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", DAMPING_MODELS)
 def test_an_impact_gives_back_what_its_restitution_says(model: str) -> None:
     """A (1 + e') = ln((1 + A) / (1 - A e')) of Hunt and Crossley's force, see forces/contact.py."""
     given = 0.8
     sol = ball(restitution=given, damping_model=model).simulate(5e-3)
-    loss, back = MODELS[model](given), -sol.body("ball").vx[-1] / 0.5
+    loss, back = DAMPING_MODELS[model](given), -sol.body("ball").vx[-1] / 0.5
     assert loss * (1.0 + back) == pytest.approx(math.log((1.0 + loss) / (1.0 - loss * back)), rel=1e-6)
 
 

@@ -72,7 +72,7 @@ def test_a_function_that_fails_is_a_reason() -> None:
 def test_the_interface_of_frames() -> None:
     m = swing()
     arm = m.bodies["arm"]
-    with pytest.raises(ModelError, match=r"knows no moment.*frames="):
+    with pytest.raises(ModelError, match=r"cannot take a Moment.*frames="):
         m.event("a", height)
     with pytest.raises(ModelError, match="frames are 3"):
         m.event("a", height, frames=3)  # pyright: ignore[reportArgumentType]

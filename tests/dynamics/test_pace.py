@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import logging
+import math
+import re
 import signal
 import subprocess
 import sys
 import time
 from typing import Any
 
+import numba
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, SimulationError
+from mbsd import Mechanism, ModelError, SimulationError
 from mbsd.dynamics.runs import motion, run
 from mbsd.dynamics.runs import steps as pace
+from mbsd.measures import final
 
 
 def pendulum() -> Mechanism:
@@ -150,3 +154,120 @@ def test_steps_that_creep_towards_a_change_point_end_with_its_time(monkeypatch: 
     monkeypatch.setattr(motion, "advance", advance)
     with pytest.raises(SimulationError, match=r"no longer advances at t = 0\.34.* Look for a pose that is singular"):
         m.simulate(1.0, steps=12, tolerance=1e-9)
+
+
+def pushed(torque, mass: float = 1.0) -> Mechanism:
+    m = Mechanism("runaway", gravity=None)
+    arm = m.bar("arm", 1.0, mass=mass)
+    m.revolute("A", m.ground.at(0, 0), arm.start)
+    m.user_force("push", torque, arm)
+    m.torsion_spring("other", m.ground, arm, 1.0, 0.0)
+    m.start_near(arm=57.0)
+    return m
+
+
+@numba.njit
+def cubic(t, q, v):
+    return 0.0, 0.0, 5.0 * q[2] ** 3
+
+
+@numba.njit
+def growing_saturated(t, q, v):
+    return 0.0, 0.0, 5.0 * min(q[2], 30.0) ** 3
+
+
+def test_growth_in_finite_time_ends_within_a_few_thousand_steps() -> None:
+    for mass in (1.0, 2.0):
+        with pytest.raises(SimulationError, match="moves without bound: under force 'push'") as failed:
+            pushed(cubic, mass).simulate(20.0, steps=10, formulation="reference")
+        text = str(failed.value)
+        seen, ends = (float(re.search(rf"{word} t = ([0-9.]+)", text)[1]) for word in ("at", "ends at"))  # pyright: ignore[reportOptionalSubscript]
+        assert seen < ends < seen + 1e-3
+        assert "Limit force 'push'" in text
+    # theta'' = k theta^3 from theta_0 at rest: t_e = 1.31103 sqrt(2 / k) / theta_0, less the other force's delay
+    ideal = 1.31103 * np.sqrt(2.0 / (3.0 * 5.0 / 2.0)) / np.radians(57.0)
+    assert ideal < ends < 1.1 * ideal
+
+
+def test_the_loop_over_many_gives_such_a_row_up_early() -> None:
+    many = pushed(cubic).simulate_many(
+        20.0, vary={"arm": {"mass": [1.0, 2.0]}}, measure={"x": final("arm.theta")}, steps=10, formulation="reference"
+    )
+    assert all("moves without bound" in str(reason) for reason in many.reason)
+    assert many.alone == ["it takes more than 200000 steps"] * 2
+
+
+def test_growth_that_ends_is_followed_to_the_end() -> None:
+    sol = pushed(growing_saturated).simulate(0.7, steps=20, formulation="reference")
+    omega = sol.body("arm").omega
+    assert omega[-1] > 5e4
+    np.testing.assert_allclose(omega[-1] - omega[-2], 5.0 * 30.0**3 * 3.0 * 0.035, rtol=0.1)  # the other force brakes
+
+
+def test_exponential_growth_goes_on() -> None:
+    m = Mechanism("thrown", gravity=None)
+    ball = m.body("ball", mass=1.0, inertia=1.0)
+    m.user_force("away", numba.njit(lambda t, q, v: (4.0 * q[0], 0.0, 0.0)), ball)
+    m.start_near(ball=(1.0, 0.0, 0.0))
+    sol = m.simulate(20.0, steps=20, tolerance=1e-10)
+    np.testing.assert_allclose(sol.body("ball").x[-1], np.cosh(40.0), rtol=1e-6)
+    assert sol.body("ball").vx[-1] > 1e17
+
+
+def test_steps_that_become_too_small_name_the_force_that_grows() -> None:
+    m = Mechanism("thrown", gravity=None)
+    ball = m.body("ball", mass=1.0, inertia=1.0)
+    m.user_force("away", numba.njit(lambda t, q, v: (q[0] ** 2 + 1.0, 0.0, 0.0)), ball)
+    with pytest.raises(SimulationError, match="'ball' moves without bound: under force 'away'"):
+        m.simulate(20.0, steps=20)
+
+
+def _braked(function, speed: float) -> Mechanism:
+    m = Mechanism("brake", gravity=None)
+    sledge = m.body("sledge", 1.0, inertia=1.0)
+    m.user_force("drag", function, sledge)
+    m.start_moving(sledge=(speed, 0.0, 0.0))
+    return m
+
+
+def _exponential(t, q, v):
+    return 1.0 - math.exp(50.0 * v[0]), 0.0, 0.0
+
+
+def _root(t, q, v):
+    return math.sqrt(0.5 - t), 0.0, 0.0
+
+
+@pytest.mark.parametrize("method", ["dop853", "radau"])
+@pytest.mark.parametrize("function", [_exponential, numba.njit(_exponential)], ids=["Python", "numba"])
+def test_a_stage_that_overflows_shortens_the_step(function, method: str) -> None:
+    """v' = 1 - exp(50 v):  exp(-50 v) = 1 - (1 - exp(-50 v0)) exp(-50 t), and v0 = 0.4 pushes with 5e8 N."""
+    sol = _braked(function, 0.4).simulate(0.1, steps=10, method=method, tolerance=1e-9)
+    expected = -np.log(1.0 - (1.0 - math.exp(-20.0)) * np.exp(-50.0 * sol.t)) / 50.0
+    np.testing.assert_allclose(sol.body("sledge").vx, expected, atol=1e-7)
+
+
+@pytest.mark.parametrize("method", ["dop853", "radau"])
+@pytest.mark.parametrize("function", [_root, numba.njit(_root)], ids=["Python", "numba"])
+def test_what_fails_however_short_the_step_is_an_error_with_force_time_and_number(function, method: str) -> None:
+    said = r"brake: force 'drag': at t = 0\.5 s with \[.*\] the user's function (fails: ValueError|gives \[nan)"
+    with pytest.raises(ModelError, match=said):
+        _braked(function, 0.4).simulate(1.0, steps=10, method=method)
+
+
+def test_what_is_no_number_is_told_at_once() -> None:
+    def forgetful(t, q, v):
+        return unknown, 0.0, 0.0  # noqa: F821  # pyright: ignore[reportUndefinedVariable]
+
+    with pytest.raises(ModelError, match=r"at t = 0 s with .* NameError"):
+        _braked(forgetful, 0.4).simulate(1.0, steps=10)
+    with pytest.raises(ModelError, match=r"at t = 0\.5\d* s with .* ValueError"):
+        _braked(_root, 0.4).simulate(1.0, method="rk4", step=0.01)
+
+
+def test_an_overflow_long_ago_is_not_blamed_for_another_end() -> None:
+    def sharp(t, q, v):
+        return 1.0 - math.exp(50.0 * v[0]), 1.0 / (0.3 - t) if t < 0.3 else 1e12, 0.0
+
+    with pytest.raises(SimulationError, match=r"stops at t = 0\.3 s"):
+        _braked(sharp, 0.4).simulate(1.0, steps=10)

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import math
 
+import numba
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
-from mbsd import Mechanism, ModelError, ModelWarning, angle_reaches, distance_reaches
+from mbsd import Mechanism, ModelError, ModelWarning, angle_reaches, distance_reaches, polynomial, speed_reaches
+from mbsd.measures import final
 
 
 def _pendulum() -> Mechanism:
@@ -176,3 +180,154 @@ def test_a_step_with_no_time_within_it_has_no_events_of_rounding(preload: float,
     sol = m.simulate(4e-10, steps=1, tolerance=1e-6)
     assert [(event.name, event.what) for event in sol.events] == [("rub A", "sticks")]
     assert sol.t[-1] == 4e-10
+
+
+G = 9.81
+
+
+def falling_arm(level: float, noted: bool = False) -> Mechanism:
+    """A bar that falls about its hinge until it turns at ``level`` (rad/s), and then flies, turning as fast."""
+    m = Mechanism("loose", gravity=(0, -G))
+    arm = m.bar("arm", 1.0, mass=1.0)
+    hinge = m.revolute("hinge", m.ground.at(0, 0), arm.start)
+    m.event("gone", speed_reaches(arm, level), releases=[hinge])
+    if noted:
+        m.event("seen", speed_reaches(arm, level))
+    m.start_near(arm=0)
+    return m
+
+
+def fall(level: float) -> float:
+    """Angle (rad) at which a falling bar turns at ``level`` (rad/s): w^2 = 3 g sin(angle) / l, downwards."""
+    return -math.asin(level**2 / (3 * G))
+
+
+@settings(max_examples=30, suppress_health_check=[HealthCheck.too_slow])
+@given(
+    level=st.floats(-4.5, -0.2).map(lambda level: round(level, 3)),
+    tolerance=st.sampled_from([1e-4, 1e-7, 1e-10]),
+    steps=st.sampled_from([2, 50]),
+    noted=st.booleans(),
+)
+def test_a_bar_that_keeps_its_speed_in_free_flight_lets_go_once(
+    level: float, tolerance: float, steps: int, noted: bool
+) -> None:
+    sol = falling_arm(level, noted).simulate(2.0, steps=steps, tolerance=tolerance)
+    names = [event.name for event in sol.events]
+    assert names.count("gone") == 1
+    assert names.count("seen") <= 1  # it is at its level when the bar lets go, on whichever side rounding has it
+    near = 1e-9 + 30.0 * tolerance
+    np.testing.assert_allclose(sol.body("arm").omega[-1], level, atol=near)
+    when = sol.events[0].time
+    np.testing.assert_allclose(sol.body("arm").theta[-1], fall(level) + level * (2.0 - when), atol=10.0 * near)
+
+
+@numba.njit
+def brake(t: float, q: np.ndarray, v: np.ndarray) -> tuple[float, float, float]:
+    """Slows from 2 to 3 s, and speeds up from 3 to 5 s, by 1 rad/s^2."""
+    return 0.0, 0.0, -1.0 if 2.0 < t <= 3.0 else 1.0 if 3.0 < t < 5.0 else 0.0
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.3], ids=["as it is", "turned"])
+def test_it_happens_again_where_it_left_zero_and_comes_back(shift: float) -> None:
+    """A motor lets go of a wheel at 2 rad/s, which then turns as fast for a second."""
+    m = Mechanism("wheel", gravity=None)
+    wheel = m.body("wheel", 1.0, inertia=1.0)
+    m.revolute("axle", m.ground.at(0, 0, shift), wheel.at(0, 0, -shift))
+    motor = m.drive_angle("motor", wheel, polynomial(0.0, 0.0, 1.0))
+    m.event("fast", speed_reaches(wheel, 2.0), releases=[motor])
+    m.user_force("brake", brake, wheel)
+    sol = m.simulate(6.0, steps=600)
+    assert [event.name for event in sol.events] == ["fast", "fast"]
+    np.testing.assert_allclose([event.time for event in sol.events], [1.0, 4.0], atol=1e-4)
+    np.testing.assert_allclose(sol.body("wheel").omega[-1], 3.0, atol=1e-4)
+    many = m.simulate_many(6.0, measure={"w": final("wheel.omega")}, vary={"wheel": {"inertia": [1.0]}}, steps=600)
+    np.testing.assert_allclose(many["w"], sol.body("wheel").omega[-1], atol=1e-7)
+
+
+def test_names_of_columns_need_no_event() -> None:
+    """An action that fails at the start is the reason of its rows, not an error of the call."""
+    m = Mechanism("bad", gravity=None)
+    body = m.body("stone", 1.0, inertia=1.0)
+    m.event("now", lambda t, moment: t - 5e-10, action=lambda moment: 1 / 0)
+    many = m.simulate_many(1.0, moving={"stone": [(1.0, 0.0, 0.0)]}, measure={"x": final(f"{body.name}.x")}, steps=4)
+    assert not many.good.any()
+    assert "now" in str(many.reason[0])
+
+
+ANGLE = 0.2
+C, S = math.cos(ANGLE), math.sin(ANGLE)
+LANDS = math.sqrt(2 * 0.05 / (9.80665 * C))
+DURATIONS = [0.28, 0.35, 0.57, 1.02, 1.25, 1.7]
+"""s; events came at other times in each, or ended in an error of scipy."""
+
+
+def thrown_box() -> Mechanism:
+    """A box that falls onto a slope and slides down it on two feet."""
+    m = Mechanism("box")
+    box = m.body("box", 2.0, (0.0123, 0.0331), inertia=0.01)
+    for name, x in (("left", -0.1), ("right", 0.1)):
+        m.rigid_contact(name, m.ground.at(0, 0, ANGLE), box.at(x, 0, 0), friction=0.1)
+    m.start_near(box=(-0.05 * S, 0.05 * C, math.degrees(ANGLE)))
+    m.start_moving(box=(3.0 * C, 3.0 * S, 0))
+    return m
+
+
+@numba.njit
+def leaving(t: float, q: np.ndarray, v: np.ndarray) -> float:
+    """The speed away from the slope (m/s)."""
+    return -S * v[0] + C * v[1]
+
+
+@numba.njit
+def sign(t: float, q: np.ndarray, v: np.ndarray) -> float:
+    """Its sign."""
+    return 1.0 if leaving(t, q, v) > 0.0 else -1.0
+
+
+@pytest.mark.parametrize("duration", DURATIONS)
+@pytest.mark.parametrize("value", [leaving, sign])
+def test_a_speed_that_a_contact_takes_away_comes_to_zero_once_and_then(value, duration: float) -> None:  # type: ignore[no-untyped-def]
+    m = thrown_box()
+    m.event("lies", value, frames=[m.bodies["box"].origin])
+    times = [event.time for event in m.simulate(duration, steps=10).events if event.name == "lies"]
+    assert times == [pytest.approx(LANDS, rel=1e-9)]
+
+
+def test_the_loop_over_many_meets_it_as_single_simulations_do() -> None:
+    m = thrown_box()
+    m.event("lies", leaving, frames=[m.bodies["box"].origin], terminal=True)
+    many = m.simulate_many(
+        1.0, vary={"box": {"mass": [1.0, 2.0, 3.0]}}, measure={"t": final("t"), "x": final("box.x")}, steps=20
+    )
+    assert many.alone == [None] * 3
+    np.testing.assert_allclose(many["t"], LANDS, rtol=1e-9)
+    np.testing.assert_allclose(many["x"], m.simulate(1.0, steps=20).body("box").x[-1], rtol=1e-9)
+
+
+def test_a_block_that_friction_stops_has_stopped() -> None:
+    """Its speed comes to zero just when the contact begins to hold it."""
+    m = Mechanism("block")
+    block = m.body("block", 2.0, inertia=1.0)
+    m.rigid_contact("floor", m.ground.origin, block.origin, friction=0.4)
+    m.start_near(block=(0, 0, 0))
+    m.start_moving(block=(1.0, 0, 0))
+    m.event("stops", lambda t, moment: moment.body("block").vx, direction=-1, terminal=True)
+    for duration in (0.5, 1.0, 3.0):
+        sol = m.simulate(duration)
+        assert sol.events[-1].what == "end"
+        assert sol.t[-1] == pytest.approx(1.0 / (0.4 * 9.80665), rel=1e-9)
+
+
+def test_what_rounding_alone_decides_is_an_error_that_names_the_event() -> None:
+    """The angular velocity of a box on two feet is zero but for rounding."""
+    refused = []
+    for duration in np.linspace(0.7, 2.0, 12):
+        m = thrown_box()
+        m.event("odd", lambda t, moment: 0.5 - t if moment.body("box").omega > 0 else t - 0.7)
+        try:
+            m.simulate(float(duration), steps=10)
+        except ModelError as error:
+            refused.append(str(error))
+    assert refused
+    assert all("event 'odd' at t = " in words and "smooth in time and motion" in words for words in refused)

@@ -9,7 +9,7 @@ import pytest
 from scipy.optimize import brentq
 
 from mbsd import Mechanism, ModelError, Solution, curve, harmonic
-from mbsd.model.entries import MODELS
+from mbsd.model.forces.contact import DAMPING_MODELS
 
 G = 9.80665
 PUBLISHED = {"hunt_crossley": 0.02, "lankarani_nikravesh": 0.02, "flores": 0.05}
@@ -40,12 +40,12 @@ def impact(restitution: float, model: str, speed: float, exponent: float = 1.5, 
     return m
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", DAMPING_MODELS)
 @pytest.mark.parametrize(("restitution", "speed", "exponent"), [(0.9, 2.0, 1.5), (0.5, 0.3, 1.5), (0.7, 5.0, 1.0)])
 def test_an_impact_returns_as_the_model_says(model, restitution, speed, exponent) -> None:
     sol = impact(restitution, model, speed, exponent).simulate(0.08 / speed + 0.02, steps=200, tolerance=1e-10)
     body = sol.body("ball")
-    assert body.vy[-1] / speed == pytest.approx(returned(MODELS[model](restitution)), rel=1e-7)
+    assert body.vy[-1] / speed == pytest.approx(returned(DAMPING_MODELS[model](restitution)), rel=1e-7)
     np.testing.assert_allclose(body.vx, 0.3, atol=1e-12)
     assert np.ptp(sol.audit) < 1e-8 * sol.energy.total[0]
     assert sol.stats.power_residual < 1e-9
@@ -55,17 +55,17 @@ def test_an_impact_returns_as_the_model_says(model, restitution, speed, exponent
     np.testing.assert_allclose(effort[inside], 0.5 * body.ay[inside], rtol=1e-9)
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", DAMPING_MODELS)
 def test_it_is_near_the_restitution_where_its_authors_say(model: str) -> None:
-    assert returned(MODELS[model](0.9)) == pytest.approx(0.9, abs=PUBLISHED[model])
+    assert returned(DAMPING_MODELS[model](0.9)) == pytest.approx(0.9, abs=PUBLISHED[model])
     if model == "flores":
         for e in (0.3, 0.4, 0.5, 0.6, 0.7, 0.8):
-            assert returned(MODELS[model](e)) == pytest.approx(e, abs=PUBLISHED[model])
+            assert returned(DAMPING_MODELS[model](e)) == pytest.approx(e, abs=PUBLISHED[model])
     else:  # both lose too little where much should be lost
-        assert returned(MODELS[model](0.3)) > 0.55
+        assert returned(DAMPING_MODELS[model](0.3)) > 0.55
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", DAMPING_MODELS)
 def test_a_bouncing_ball_loses_the_same_part_at_each_bounce(model: str) -> None:
     m = Mechanism("bounces")
     ball = m.body("ball", 0.5, inertia=1.0)
@@ -76,7 +76,7 @@ def test_a_bouncing_ball_loses_the_same_part_at_each_bounce(model: str) -> None:
     peaks = np.flatnonzero((height[1:-1] > height[:-2]) & (height[1:-1] > height[2:])) + 1
     tops = np.array([0.5, *height[peaks]])
     assert len(tops) >= 4
-    np.testing.assert_allclose(np.sqrt(tops[1:] / tops[:-1]), returned(MODELS[model](0.8)), rtol=1e-2)
+    np.testing.assert_allclose(np.sqrt(tops[1:] / tops[:-1]), returned(DAMPING_MODELS[model](0.8)), rtol=1e-2)
     assert np.ptp(sol.audit) < 1e-7
 
 
@@ -103,12 +103,12 @@ def test_two_contacts_remember_each_their_own() -> None:
         m.start_moving(**{name: (0.0, -speed, 0.0)})
     sol = m.simulate(0.2, steps=50, tolerance=1e-10)
     for name, speed in (("slow", 0.5), ("fast", 2.0)):
-        assert sol.body(name).vy[-1] / speed == pytest.approx(returned(MODELS["flores"](0.6)), rel=1e-7)
+        assert sol.body(name).vy[-1] / speed == pytest.approx(returned(DAMPING_MODELS["flores"](0.6)), rel=1e-7)
 
 
 def test_moving_surfaces_profiles_and_events_do_not_matter() -> None:
     """On a slope, as a profile, with friction, seen from a moving frame, and with events that take steps back."""
-    want = returned(MODELS["flores"](0.6))
+    want = returned(DAMPING_MODELS["flores"](0.6))
     m = Mechanism("wall", gravity=None)
     wall, ball = m.body("wall", 900.0, inertia=900.0), m.body("ball", 0.01, inertia=0.01)
     m.contact("hit", wall.at(0.0, 0.0, 0.4), ball.origin, 1e5, restitution=0.6, radius=0.1)
@@ -162,7 +162,7 @@ def test_a_driven_motion_knows_it_from_its_outputs() -> None:
     sol = m.sweep(steps=200)
     body, force = sol.body("ram"), sol.force("stock")
     begins = 0.02 * 10.0 * math.sqrt(1 - 0.75**2)  # |rate| where the place is 0
-    wanted = 1e4 * np.maximum(-body.y, 0.0) * np.maximum(1 - MODELS["flores"](0.5) * body.vy / begins, 0.0)
+    wanted = 1e4 * np.maximum(-body.y, 0.0) * np.maximum(1 - DAMPING_MODELS["flores"](0.5) * body.vy / begins, 0.0)
     np.testing.assert_allclose(force.effort, wanted, rtol=1e-6, atol=1e-5)
     np.testing.assert_allclose(sol.driver("drive").force, body.ay - wanted, atol=1e-3)
 

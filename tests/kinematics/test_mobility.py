@@ -113,32 +113,14 @@ def test_links_that_cannot_close_say_by_how_much() -> None:
     assert "coupler + rocker = 0.05 m must reach 0.08 m" in str(error.value)
 
 
-def test_links_that_stop_closing_in_mid_motion_say_where() -> None:
-    with pytest.raises(SingularPoseError, match=r"beyond t = 0\.\d+ s \(motor at .* degrees\): a toggle") as error:
-        four_bar(crank=0.08, coupler=0.07, rocker=0.09).sweep()
-    assert "Drive within the reachable range" in str(error.value)
-
-
 def test_a_toggle_is_found_where_geometry_says() -> None:
     ground, crank, coupler, rocker = 0.12, 0.08, 0.07, 0.09
     limit = math.degrees(math.acos((ground**2 + crank**2 - (coupler + rocker) ** 2) / (2 * ground * crank)))
-    with pytest.raises(SingularPoseError) as error:
+    with pytest.raises(SingularPoseError, match=r"beyond t = 0\.\d+ s \(motor at .* degrees\): a toggle") as error:
         four_bar(ground, crank, coupler, rocker).sweep()
+    assert "Drive within the reachable range" in str(error.value)
     told = float(str(error.value).split("motor at ")[1].split(" degrees")[0])
     assert told == pytest.approx(limit, abs=0.05)
-
-
-def test_a_dead_centre_start_is_refused_as_singular() -> None:
-    m = Mechanism("slider_crank")
-    crank, conrod, slider = m.bar("crank", 0.05), m.bar("conrod", 0.15), m.body("slider")
-    m.revolute("O", m.ground.at(0, 0), crank.start)
-    m.revolute("A", crank.end, conrod.start)
-    m.revolute("B", conrod.end, slider.origin)
-    m.prismatic("guide", m.ground.at(0, 0), slider.origin)
-    m.drive_coordinate("ram", m.ground.origin, slider.origin, constant_rate(-0.01, 0.2))
-    m.start_near(crank=0, conrod=0)
-    with pytest.raises(SingularPoseError, match="start pose"):
-        m.sweep(duration=1.0)
 
 
 def test_a_sweep_without_a_natural_duration_asks_for_one() -> None:
@@ -146,14 +128,6 @@ def test_a_sweep_without_a_natural_duration_asks_for_one() -> None:
     m.drive_angle("motor", m.bodies["crank"], lambda t: t)
     with pytest.raises(ModelError, match="duration"):
         m.sweep()
-
-
-def test_a_change_point_that_no_output_falls_on_is_passed_on_the_same_branch() -> None:
-    m = parallelogram(extra=False)
-    m.drive_angle("motor", m.bodies["left"], constant_rate(1.0, math.radians(60)))
-    sol = m.sweep(steps=500)
-    np.testing.assert_allclose(sol.body("coupler").theta, 0.0, atol=1e-9)
-    assert min(sol.singularity_margin) > 1e-5
 
 
 def test_forty_loops_have_one_freedom_and_a_repeated_pin_is_named() -> None:

@@ -1,4 +1,4 @@
-"""Every folder of mechanisms/, without being told: it solves, closes, has solids, a shot and a GLB, never touches."""
+"""Every folder of mechanisms/ runs through its stages; their motions and studies."""
 
 from __future__ import annotations
 
@@ -7,9 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import mbsd
+from mechanisms.four_bar.mechanism import Params, build
 from mechanisms.stages.loading import loading
 from mechanisms.stages.parts.meshes import VOLUME_TOLERANCE
 from mechanisms.stages.parts_files import read_mesh
+from mechanisms.stages.solve.masses import bare_solution
 from render import glb
 from render.film.inputs import read_film
 from render.frames.story.telling import telling_of
@@ -17,9 +20,13 @@ from render.presets import PRESETS, WIDE
 from shared import contract
 from shared.contract.shot import Names, read_shot, refuse_unknown
 from shared.stage.paths import Out, mechanism_names
+from tests.mechanisms.every_folder import folders_and_variants
 from tests.render.filling import boxes, filled, refuse_overlaps
 from tests.render.glb_file import GlbFile
 from tests.running.warm import Warm
+
+# Every folder of mechanisms/, without being told: it solves, closes, has solids, a shot and a GLB, never touches.
+
 
 STAGES = ("parts", "solve", "clearance", "shot")
 SLOW = {
@@ -208,3 +215,35 @@ def test_it_fills_wide_and_tall_pictures_and_its_words_have_room(out: Out) -> No
         written = boxes(read_film(out, "velocities,accelerations,forces,reactions,title", shape))
         assert len(written) >= 2
         refuse_overlaps(written)
+
+
+# Every mechanism of mechanisms/ and each variant: its motion from mechanism.py alone, before it has parts.
+#
+# All stages of every folder are run by test_mechanisms.py, for the large ones among the slow tests.
+
+
+@pytest.mark.parametrize("name", folders_and_variants())
+def test_its_motion_closes_at_all_times_and_has_no_gaps(name: str) -> None:
+    solution = bare_solution(name)
+    assert solution.stats.position_residual < 1e-10
+    assert solution.stats.velocity_residual < 1e-8
+    assert solution.stats.acceleration_residual < 1e-6
+    for body in solution.mechanism.bodies:
+        motion = solution.body(body)
+        assert np.isfinite(np.column_stack([motion.x, motion.y, motion.theta, motion.omega, motion.alpha])).all()
+    moved = [np.ptp(solution.body(body).x) + np.ptp(solution.body(body).theta) for body in solution.mechanism.bodies]
+    assert max(moved) > 1e-3, "something moves"
+
+
+# A study over the gallery's Params, which are a frozen dataclass, is kept.
+
+
+def test_params_of_the_gallery_are_kept(tmp_path: Path) -> None:
+    def made(crank: float) -> mbsd.Mechanism:
+        return build(Params(crank=crank))
+
+    points = {"crank": [0.03, 0.04]}
+    for _ in range(2):
+        table = mbsd.study(made, points, lambda m: {"n": len(m.bodies)}, folder=tmp_path, processes=1, progress=False)
+        assert list(table["n"]) == [4, 4]
+    assert len(list(tmp_path.rglob("*.jsonl"))) == 1

@@ -1,30 +1,51 @@
-"""Parts by a scheduler and three workers on loopback, the one at work killed: the same bytes as here."""
+"""Parts made by workers of a cluster, with files of an author's own, and what comes back."""
 
 from __future__ import annotations
 
+import hashlib
 import os
 import shutil
 import signal
+import subprocess
+import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import cadquery
 import dask.config
 import distributed
+import msgspec
 import psutil
 import pytest
 
 from mbsd.dealing import hand
+from mbsd.dealing.wrong_answer import WrongAnswer
+from mechanisms.stages.loading.inputs import Inputs
+from mechanisms.stages.loading.loading import author_code
 from mechanisms.stages.parts import stage as parts_stage
-from mechanisms.stages.parts.on_cluster import built, dealt
-from mechanisms.stages.parts.on_cluster.answer import Made
-from mechanisms.stages.parts.on_cluster.author_files import collected
+from mechanisms.stages.parts.bodies import described_body
+from mechanisms.stages.parts.on_cluster import answer, built, dealt
+from mechanisms.stages.parts.on_cluster.answer import WorkerParts
+from mechanisms.stages.parts.on_cluster.built import Order, by_content, collected
+from mechanisms.stages.parts.on_cluster.solids_check import refuse_wrong
+from mechanisms.stages.parts_files import binary_stl, read_triangles
+from shared.cluster import preload
+from shared.cluster.deal import content_hash
+from shared.cluster.preload import identity
+from shared.contract import Parts, Provenance
+from shared.shapes.solid import Solid
+from shared.stage import jsonfile, paths
 from shared.stage.errors import UserError
 from shared.stage.files import is_abandoned
+from shared.stage.paths import ROOT
 from tests.mechanisms.author_project import Project, put
 from tests.mechanisms.test_inputs_of_parts import MECHANISM, PARTS
+
+# Parts by a scheduler and three workers on loopback, the one at work killed: the same bytes as here.
+
 
 WIDE = "def arm(p):\n    return box(1000 * p.length, float((HERE / 'data' / 'width.txt').read_text()))\n"
 
@@ -104,7 +125,7 @@ def test_what_a_worker_cannot_tell_is_made_here(
     assert project.run()
     here, stamp = files(out_root / "arm"), parts_stage.Stage(parts_stage.Out("arm"), "parts", "", [])
     solids = {name.removeprefix("parts/"): content for name, content in here.items() if name.startswith("parts/")}
-    made = Made(solids.pop("parts.json"), dict.fromkeys(solids, b"other"), stamp.notes())
+    made = WorkerParts(solids.pop("parts.json"), dict.fromkeys(solids, b"other"), stamp.notes())
     put("mechanisms/arm/data/width.txt", "9.0")(project)
     monkeypatch.setenv("CLUSTER", "tcp://127.0.0.1:1")
     monkeypatch.setattr(dealt, "made_elsewhere", lambda *_: made if "disk" in change else None)
@@ -117,7 +138,7 @@ def test_what_a_worker_cannot_tell_is_made_here(
 
 def test_files_of_authors_travel_and_no_others(project: Project) -> None:
     put("mechanisms/arm/__pycache__/parts.cpython-313.pyc", "")(project)
-    put("mechanisms/stages/new.py", "")(project)
+    put("mechanisms/stages/new/new.py", "")(project)
     put("mechanisms/automatic.py", "")(project)
     put("mechanisms/helper.py", "")(project)
     (project.folder / "gone.step").symlink_to("nowhere")
@@ -130,3 +151,338 @@ def test_a_worker_writes_no_other_files(tmp_path: Path, path: str) -> None:
     with pytest.raises(UserError, match="is no file of an author's"):
         built._write_file(tmp_path / "tree", path, b"")
     assert not list(tmp_path.rglob("*.py"))
+
+
+# Parts of a user's own folder by workers that do not see it: the same bytes as here, whatever form the folder has.
+
+
+MECHANISM_of_own = """
+from dataclasses import dataclass
+from mbsd import Mechanism, constant_rate
+import sizes
+
+@dataclass(frozen=True)
+class Params:
+    length: float = sizes.LENGTH
+
+def build(p):
+    m = Mechanism("@NAME@")
+    arm = m.bar("arm", p.length)
+    m.revolute("A", m.ground.at(0, 0), arm.start)
+    m.drive_angle("motor", arm, constant_rate(6.0))
+    return m
+"""
+SOLIDS = """
+from shared.shapes.solid import Solid
+from lib.boxes import box
+
+def parts(p):
+    return {"ground": [Solid("plate", box(20.0, 8.0), "steel", 0)],
+            "arm": [Solid("arm", box(1000 * p.length, width()), "steel", 0)]}
+"""
+BESIDE = """
+def width():
+    from pathlib import Path
+    return float((Path(__file__).parent / "data" / "width.txt").read_text())
+"""
+OF_SINGLE = """
+def width():
+    from .lengths import WIDTH
+    return WIDTH
+"""
+BOXES = """
+import cadquery as cq
+from .thick import T
+
+def box(a, b):
+    return cq.Workplane().box(a, b, T)
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A machine in a folder and one in a file, what they import and read, and what is nobody's business."""
+    place = tmp_path / "my machines"
+    texts = {
+        "arm/mechanism.py": MECHANISM_of_own.replace("@NAME@", "arm"),
+        "arm/parts.py": SOLIDS + BESIDE,
+        "arm/data/width.txt": "7.5",
+        "arm/.git/secret": "",
+        "wheel.py": MECHANISM_of_own.replace("@NAME@", "wheel") + SOLIDS + OF_SINGLE,
+        "lengths.py": "WIDTH = 6.5\n",
+        "sizes.py": "LENGTH = 0.04\n",
+        "lib/__init__.py": "",
+        "lib/boxes.py": BOXES,
+        "lib/thick.py": "T = 3.0\n",
+        "lib/unused.py": "",
+        "private.py": "",
+        "photo.jpg": "",
+    }
+    for name, text in texts.items():
+        (place / name).parent.mkdir(parents=True, exist_ok=True)
+        (place / name).write_text(text)
+    monkeypatch.setenv("MBSD_WORKSHOP", str(place))
+    monkeypatch.setattr(paths, "MECHANISMS", place)
+    return place
+
+
+LIBRARY = {f"workshop:{name}" for name in ("sizes.py", "lib/__init__.py", "lib/boxes.py", "lib/thick.py")}
+OF_ARM = {f"workshop:arm/{name}" for name in ("mechanism.py", "parts.py", "data/width.txt")}
+
+
+def test_files_of_the_mechanism_travel_and_what_they_import_and_no_others(folder: Path) -> None:
+    assert set(collected("arm")) == OF_ARM | LIBRARY
+    assert set(collected("wheel")) == {"workshop:wheel.py", "workshop:lengths.py"} | LIBRARY
+
+
+def test_what_was_read_before_travels_if_it_lies_in_the_folder(folder: Path) -> None:
+    read = ["workshop:photo.jpg", "workshop:gone.txt", "/etc/passwd", "shared/shot.py", "results:x"]
+    assert set(collected("wheel", read)) - set(collected("wheel")) == {"workshop:photo.jpg"}
+
+
+def test_a_folder_that_is_the_machine_itself_sends_its_three_files(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folder / "mechanism.py").write_text("from .helper import K\n")
+    (folder / "helper.py").write_text("K = 1\n")
+    (folder / "parts.py").write_text("")
+    assert set(collected("my_machines")) == {f"workshop:{name}.py" for name in ("mechanism", "parts", "helper")}
+
+
+def made_far(name: str, place: Path, monkeypatch: pytest.MonkeyPatch, scale: str = "") -> answer.WorkerParts:
+    """What a worker makes of contents alone, in a folder of its own."""
+    files = collected(name)
+    hashes = {path: content_hash(content) for path, content in files.items()}
+    order = Order(
+        name=name, files=hashes, program=identity(preload.PARTS, preload.OF_PARTS),
+        folder=paths.MECHANISMS.name, scale=scale,
+    )  # fmt: skip
+    common = msgspec.json.encode(order)
+    place.mkdir()
+    for key, content in {**by_content(files), "order": common}.items():
+        (place / key).write_bytes(content)
+    with monkeypatch.context() as patch:
+        patch.setenv("MBSD_OUT", str(place / "out"))
+        patch.setenv("MBSD_WORKSHOP", str(place))  # a worker that was started in a folder, too
+        contents = {key: place / key for key in (*hashes.values(), "order")}
+        return msgspec.msgpack.decode(built.parts(contents, "order", name), type=answer.WorkerParts)
+
+
+def mbsd(folder: Path, *words: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """The program in the user's folder."""
+    ours = ("MBSD_OUT", "MBSD_FACE", "MBSD_WORKSHOP", "CLUSTER", "MBSD_MAKE")
+    kept = {key: value for key, value in os.environ.items() if key not in ours}
+    command = [sys.executable, "-P", "-m", "mbsd", *words]
+    return subprocess.run(
+        command, cwd=folder, env=kept | {"PYTHONPATH": str(ROOT)} | environment, capture_output=True, text=True
+    )  # fmt: skip
+
+
+def files_in(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+@pytest.mark.parametrize(("name", "scale"), [("arm", ""), pytest.param("wheel", "1:2", marks=pytest.mark.slow)])
+def test_a_worker_that_has_contents_alone_makes_the_same_bytes(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, scale: str
+) -> None:
+    made = made_far(name, tmp_path / "far", monkeypatch, scale)
+    assert made.refusal == ""
+    done = mbsd(folder, "parts", name, *(["--scale", scale] if scale else []))
+    assert done.returncode == 0, done.stderr
+    below = folder / "out" / name / ("scale_1_2" if scale else "")
+    assert files_in(below / "parts") == {"parts.json": made.document, **made.files}
+    assert "workshop:lib/thick.py" in made.notes["inputs"]["modules"]
+    assert not scale or not (folder / "out" / name / "parts").exists(), "none of full size are made for a model"
+
+
+@pytest.mark.parametrize(
+    "path", ["workshop:../x.py", "workshop:/etc/x", "workshop:", "../tree/shared/x.py", "workshop:a/../../x"]
+)
+def test_a_worker_writes_no_file_outside_the_copy_of_the_folder(tmp_path: Path, path: str) -> None:
+    tree = tmp_path / "tree"
+    with pytest.raises(UserError, match="is no file of an author's"):
+        built._write_file(tree, path, b"", built.own_folder(tree, "../machines"))
+    assert not list(tmp_path.rglob("*.py"))
+
+
+def test_functions_of_a_mechanism_run_where_its_folder_is_not(folder: Path) -> None:
+    """A worker of a study gets build() and measure() alone, and may have been started in a folder of its own."""
+    with author_code("arm"):
+        pass
+    with pytest.raises(ZeroDivisionError), author_code("elsewhere"):
+        raise ZeroDivisionError
+
+
+@pytest.fixture
+def cluster_of_own(tmp_path: Path) -> Iterator[Any]:
+    """A scheduler and two workers, each a process with a nanny that starts it again."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("MBSD_OUT", str(tmp_path / "workers"))
+        with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster_of_own:
+            yield cluster_of_own
+
+
+@pytest.mark.slow
+def test_a_killed_worker_loses_no_parts_of_an_own_folder(folder: Path, cluster_of_own: Any, tmp_path: Path) -> None:
+    killed: list[int] = []
+
+    def kill() -> None:
+        """The worker that has begun a stage."""
+        while not killed:
+            for worker in cluster_of_own.workers.values():
+                if worker.pid and any("parts" in child.cmdline() for child in psutil.Process(worker.pid).children()):
+                    killed.append(worker.pid)
+                    os.kill(worker.pid, signal.SIGKILL)
+                    return
+            time.sleep(0.02)
+
+    threading.Thread(target=kill, daemon=True).start()
+    far = {"CLUSTER": cluster_of_own.scheduler_address, "MBSD_OUT": str(tmp_path / "far")}
+    done = mbsd(folder, "parts", "arm", **far)
+    assert killed
+    assert "parts: arm: made by worker tcp://" in done.stdout, done.stderr
+    assert mbsd(folder, "parts", "arm").returncode == 0
+    assert files_in(tmp_path / "far" / "arm" / "parts") == files_in(folder / "out" / "arm" / "parts")
+    assert "nothing to do" in mbsd(folder, "parts", "arm", **far).stdout
+
+
+# Parts from workers: believed only where document, names, hashes, meshes, solids and masses hold together.
+
+
+OWN, PROGRAM = "mechanisms/arm/parts.py", {"cadquery": "2.5", "trimesh": "4.0"}
+NOTES: dict[str, Any] = {"parameters": ["length"], "inputs": Inputs().names() | {"modules": [OWN]}}
+Document = dict[str, Any]
+
+
+@pytest.fixture(scope="module")
+def made() -> WorkerParts:
+    """A bar with a hole, as a worker makes it."""
+    bar = cadquery.Workplane().box(40, 10, 5).faces(">Z").workplane().hole(4)
+    files: dict[str, bytes] = {}
+    body = described_body("arm", "bar", [Solid("bar", bar, "steel", 1)], files, None)
+    document = Parts(mechanism="arm", provenance=Provenance(inputs="0" * 64, versions=PROGRAM), bodies={"bar": body})
+    return WorkerParts(jsonfile.encode(document), files, NOTES)
+
+
+def bytes_of(made: WorkerParts) -> bytes:
+    return msgspec.msgpack.encode(made)
+
+
+def changed(
+    made: WorkerParts, change: Callable[[Document], object], files: dict[str, bytes] | None = None
+) -> WorkerParts:
+    document = msgspec.json.decode(made.document)
+    change(document)
+    new = msgspec.json.format(msgspec.json.encode(document), indent=1) + b"\n"
+    return WorkerParts(new, files or made.files, made.notes)
+
+
+def with_files(made: WorkerParts, **files: bytes) -> WorkerParts:
+    """Other bytes under these names, whose hash the document tells."""
+    new = made.files | {name.replace("_", "."): content for name, content in files.items()}
+
+    def hashed(document: Document) -> None:
+        document["bodies"]["bar"]["pieces"]["bar"]["stl_sha256"] = hashlib.sha256(new["bar.stl"]).hexdigest()
+
+    return changed(made, hashed, new)
+
+
+def piece(document: Document) -> Document:
+    return document["bodies"]["bar"]["pieces"]["bar"]
+
+
+def test_right_parts_are_taken(made: WorkerParts) -> None:
+    assert answer.read("arm", bytes_of(made), OWN, PROGRAM) == made
+    assert answer.read("arm", bytes_of(WorkerParts(refusal="no\x1b[2J")), OWN, PROGRAM).refusal == "no [2J"
+
+
+FALSE: dict[str, Callable[[WorkerParts], Any]] = {
+    "None": lambda made: None,
+    "a list": lambda made: [1],
+    "no document": lambda made: WorkerParts(b"", made.files, made.notes),
+    "text": lambda made: WorkerParts(b"parts", made.files, made.notes),
+    "a document cut short": lambda made: WorkerParts(made.document[:-40], made.files, made.notes),
+    "another mechanism": lambda made: changed(made, lambda d: d.update(mechanism="other")),
+    "another version": lambda made: changed(made, lambda d: d.update(schema_version=7)),
+    "other packages": lambda made: changed(made, lambda d: d["provenance"].update(versions={"cadquery": "1"})),
+    "a name with dots": lambda made: changed(
+        made, lambda d: piece(d).update(stl="../../x.stl"), {"../../x.stl": made.files["bar.stl"]}
+    ),
+    "a file of another name": lambda made: changed(
+        made,
+        lambda d: piece(d).update(stl="x.stl"),
+        {"x.stl": made.files["bar.stl"], "bar.step": made.files["bar.step"]},
+    ),
+    "a file too many": lambda made: WorkerParts(made.document, made.files | {"../../x.py": b""}, made.notes),
+    "a file too few": lambda made: WorkerParts(made.document, {"bar.stl": made.files["bar.stl"]}, made.notes),
+    "another hash": lambda made: WorkerParts(made.document, made.files | {"bar.stl": b"solid"}, made.notes),
+    "no notes": lambda made: WorkerParts(made.document, made.files),
+    "notes of numbers": lambda made: WorkerParts(made.document, made.files, NOTES | {"parameters": [1]}),
+    "notes without the author's file": lambda made: WorkerParts(
+        made.document, made.files, NOTES | {"inputs": Inputs().names()}
+    ),
+    "sources of the whole disk": lambda made: WorkerParts(
+        made.document,
+        made.files,
+        NOTES | {"inputs": NOTES["inputs"] | {"sources": ["/"]}},
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", FALSE)
+def test_what_does_not_hold_together_is_refused(
+    made: WorkerParts, kind: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(answer, "_refuse_other_solids", lambda *_: pytest.fail("nothing may be written"))
+    with pytest.raises(WrongAnswer, match=r"arm"):
+        answer.read("arm", msgspec.msgpack.encode(FALSE[kind](made)), OWN, PROGRAM)
+
+
+def half(stl: bytes) -> bytes:
+    """A whole file of half of the triangles."""
+    corners = read_triangles(stl).astype("f4")
+    return binary_stl(corners[: len(corners) // 2])
+
+
+WRONG: dict[str, Callable[[WorkerParts], WorkerParts]] = {
+    "an STL cut in half": lambda made: with_files(made, bar_stl=made.files["bar.stl"][:2000]),
+    "half of the triangles": lambda made: with_files(made, bar_stl=half(made.files["bar.stl"])),
+    "a text as STL": lambda made: with_files(made, bar_stl=b"this is no mesh"),
+    "a coordinate that is no number": lambda made: with_files(
+        made, bar_stl=made.files["bar.stl"][:96] + b"\x00\x00\xc0\x7f" + made.files["bar.stl"][100:]
+    ),
+    "a STEP cut in half": lambda made: with_files(made, bar_step=made.files["bar.step"][:4000]),
+    "a STEP cut in half with an end": lambda made: with_files(
+        made, bar_step=made.files["bar.step"][:4000] + b"\nENDSEC;\nEND-ISO-10303-21;\n"
+    ),
+    "a text as STEP": lambda made: with_files(made, bar_step=b"ISO-10303-21;\nrubbish\nEND-ISO-10303-21;\n"),
+    "another solid": lambda made: with_files(made, bar_step=made.files["bar.step"].replace(b"20.", b"23.")),
+    "another mass": lambda made: changed(made, lambda d: piece(d)["mass"].update(mass=1.0)),
+    "another mass of the body": lambda made: changed(made, lambda d: d["bodies"]["bar"]["mass"].update(mass=1.0)),
+    "another material": lambda made: changed(made, lambda d: piece(d).update(material="cheese")),
+    "other heights": lambda made: changed(made, lambda d: piece(d).update(z_range=[0.0, 1.0])),
+    "another count of triangles": lambda made: changed(made, lambda d: piece(d).update(triangles=3)),
+}
+
+
+def written(made: WorkerParts, folder: Path) -> Path:
+    (folder / "parts.json").write_bytes(made.document)
+    for name, content in made.files.items():
+        (folder / name).write_bytes(content)
+    return folder
+
+
+def test_right_solids_are_taken(made: WorkerParts, tmp_path: Path) -> None:
+    refuse_wrong(written(made, tmp_path))
+
+
+@pytest.mark.parametrize("kind", WRONG)
+def test_solids_that_are_not_as_told_are_refused(made: WorkerParts, kind: str, tmp_path: Path) -> None:
+    with pytest.raises(UserError, match="bar"):
+        refuse_wrong(written(WRONG[kind](made), tmp_path))
+
+
+def test_solids_are_read_by_a_process_of_their_own(made: WorkerParts) -> None:
+    with pytest.raises(WrongAnswer, match=r"the parts of arm: bar: bar: bar.stl is no whole binary STL \(2000 bytes\)"):
+        answer.read("arm", bytes_of(WRONG["an STL cut in half"](made)), OWN, PROGRAM)

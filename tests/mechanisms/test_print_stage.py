@@ -19,7 +19,7 @@ import pytest
 
 from mechanisms.stages.parts_files import read_mesh
 from mechanisms.stages.print import stage as print_stage
-from mechanisms.stages.print.making import Made, markdown, table
+from mechanisms.stages.print.making import Product, markdown, table
 from shared.contract import read_parts
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
@@ -67,9 +67,9 @@ def test_masses_of_heavy_pieces_are_written_without_exponents() -> None:
     """pieces.md had 6.269e+04 g and 1.861e+08 g."""
     piece = SimpleNamespace(size=(10.0, 20.0, 30.0))
     heavy = [
-        Made(("bob", "bob_2"), "cast_iron", 62.69, piece),  # pyright: ignore[reportArgumentType]
-        Made(("base",), "concrete", 186100.0, piece),  # pyright: ignore[reportArgumentType]
-        Made(("pin",), "steel", 0.0002661, piece),  # pyright: ignore[reportArgumentType]
+        Product(("bob", "bob_2"), "cast_iron", 62.69, piece),  # pyright: ignore[reportArgumentType]
+        Product(("base",), "concrete", 186100.0, piece),  # pyright: ignore[reportArgumentType]
+        Product(("pin",), "steel", 0.0002661, piece),  # pyright: ignore[reportArgumentType]
     ]
     text, rows = markdown("crane", "250 x 210", heavy, []), table(heavy, [])
     assert "## To make: 4, 186 t" in text

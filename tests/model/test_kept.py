@@ -39,6 +39,7 @@ CHANGED: dict[str, Callable[[], Mechanism]] = {
 @pytest.mark.parametrize("what", CHANGED)
 def test_another_mechanism_is_not_taken_for_the_one_before(what: str) -> None:
     import mbsd.kinematics.pose.close
+    import mbsd.kinematics.pose.held_values
     import mbsd.kinematics.pose.mobility
     import mbsd.kinematics.prepared
 
@@ -46,8 +47,8 @@ def test_another_mechanism_is_not_taken_for_the_one_before(what: str) -> None:
     after = poses(CHANGED[what]())
     for kept in (mbsd.kinematics.pose.close._NEAREST, mbsd.kinematics.prepared._SAMPLES):
         kept._results.clear()
-    for remembered in (mbsd.kinematics.pose.mobility._kept_independent, mbsd.kinematics.pose.mobility._kept_motion):
-        remembered.cache_clear()
+    mbsd.kinematics.pose.held_values._kept_independent.cache_clear()
+    mbsd.kinematics.pose.mobility._kept_motion.cache_clear()
     anew = poses(CHANGED[what]())
     assert all(np.array_equal(reused, fresh) for reused, fresh in zip(after, anew, strict=True))
 

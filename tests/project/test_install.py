@@ -169,7 +169,7 @@ def test_an_environment_whose_python_is_gone_is_made_again(tree: Tree) -> None:
 
 
 def test_a_missing_system_library_is_named_with_its_cure_until_it_is_there(tree: Tree) -> None:
-    probe = tree.folder / "shared" / "system" / "wanted.py"
+    probe = tree.folder / "shared" / "system" / "missing.py"
     text = probe.read_text()
     probe.write_text(text.replace('"libGL.so.1"', '"libNotThere.so.1"'))
     done = tree.install()

@@ -6,7 +6,6 @@ import errno
 import io
 import os
 import pty
-import resource
 import signal
 import subprocess
 import sys
@@ -172,19 +171,13 @@ def test_a_closed_pipe_is_no_traceback() -> None:
     assert done.stderr == ""
 
 
-def test_the_console_and_the_stages_load_quickly() -> None:
+def test_the_console_and_the_stages_load_nothing_heavy() -> None:
     """Every stage of a run pays for this before it can say that there is nothing to do."""
     code = "import sys, shared.stage.console, shared.stage.stages, shared.contract\n"
     code += "print([m for m in sys.modules if m in heavy])"
     code = code.replace("heavy", "('rich', 'numpy', 'matplotlib', 'bpy', 'cadquery', 'numba')")
-    used = []
-    for _ in range(3):
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        used.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
-        assert done.stdout == "[]\n"
-    assert min(used) < 0.3  # processor time, so that a busy machine does not matter
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
 
 
 def test_a_stream_that_is_no_terminal_is_plain() -> None:

@@ -11,7 +11,7 @@ the ratio of its least to its largest singular value. Velocities solve with the 
 1 / margin again, accelerations, reactions and efforts twice. So with e = DRIVEN / margin the bounds are e, e / margin
 and e / margin^2 of the largest value of their kind. Instants where that is above USELESS are not compared. Where joints
 are redundant, the rows that are solved are only some of all, worse conditioned than the margin of all tells: there e
-is DRIVEN_REDUNDANT / margin. A law known by its values alone has derivatives that err (law_error.py): the error of f'
+is DRIVEN_REDUNDANT / margin. A law known by its values alone has derivatives that err (:func:`of_law`): the error of f'
 over margin adds to velocities, that of f'' over margin to accelerations, which also go with the square of velocities;
 forces have the part of accelerations, over margin again.
 
@@ -53,7 +53,7 @@ from tools.random_mechanisms.described import BASE, NOWHERE, Pose, Raised
 #
 # Fits over other spans err otherwise, so two solutions differ by the sum of both. A table of values at times h apart is
 # a spline of degree 5. Each value is rounded by eps |f| / 2; at its ends, where derivatives are those of the polynomial
-# through six values, their weights add up to 21 / h and 53 / h^2. What that makes of the motion is in agreement.py.
+# through six values, their weights add up to 21 / h and 53 / h^2. What that makes of the motion follows below.
 
 
 SLOPE_OF_LAST = 64.0

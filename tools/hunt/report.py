@@ -19,7 +19,7 @@ SHOWN = 20
 class Tally:
     """Results as they come.
 
-    ``states`` are all that a solution can have, ``found`` those that a hunt looks for, and reasons of ``counted`` ones
+    ``states`` are all that a solution can have, ``wrong`` those that a hunt looks for, and reasons of ``counted`` ones
     are counted.
     """
 
@@ -27,10 +27,10 @@ class Tally:
         self,
         schema: str = "mbsd.hunt",
         states: tuple[str, ...] = STATES,
-        found: tuple[str, ...] = (WRONG, HUNG),
+        wrong: tuple[str, ...] = (WRONG, HUNG),
         counted: tuple[str, ...] = (REFUSED, UNCLEAR),
     ) -> None:
-        self.schema, self.states, self.found = schema, states, found
+        self.schema, self.states, self.wrong = schema, states, wrong
         self.cases: Counter[str] = Counter()
         self.seconds: dict[str, float] = defaultdict(float)
         self.slowest = (0.0, 0)
@@ -41,7 +41,7 @@ class Tally:
 
     def add(self, result: CaseResult) -> list[Outcome]:
         """Count one more case and return what it found."""
-        wrong = [outcome for outcome in result.outcomes if outcome.state in self.found]
+        wrong = [outcome for outcome in result.outcomes if outcome.state in self.wrong]
         self.findings += [(result, outcome) for outcome in wrong]
         self.cases[result.family] += 1
         self.seconds[result.family] += result.seconds
@@ -72,7 +72,7 @@ class Tally:
             "seconds": round(seconds, 1),
             "slowest": {"seed": self.slowest[1], "seconds": round(self.slowest[0], 1)},
             "solutions": {state: self.count(state) for state in self.states},
-            "found_cases": {state: self.cases_that(state) for state in self.found},
+            "found_cases": {state: self.cases_that(state) for state in self.wrong},
             "kinds": {
                 name: {"cases": self.cases[name], "seconds": round(self.seconds[name], 2)} | dict(self.families[name])
                 for name in sorted(self.cases)
@@ -113,14 +113,14 @@ class Tally:
             )
         if len(self.findings) > SHOWN:
             console.print(f"... and {len(self.findings) - SHOWN} more")
-        found = ", ".join(f"{state} {self.count(state)} (in {self.cases_that(state)} cases)" for state in self.found)
+        sums = ", ".join(f"{state} {self.count(state)} (in {self.cases_that(state)} cases)" for state in self.wrong)
         console.print(
             f"{sum(self.cases.values())} cases, {sum(map(self.count, self.states))} solutions in {duration(seconds)}, "
-            f"the slowest {self.slowest[1]} in {self.slowest[0]:.0f} s: {found}"
+            f"the slowest {self.slowest[1]} in {self.slowest[0]:.0f} s: {sums}"
         )
 
     def _sorted(self) -> list[tuple[CaseResult, Outcome]]:
-        return sorted(self.findings, key=lambda found: found[0].seed)
+        return sorted(self.findings, key=lambda finding: finding[0].seed)
 
     def _table(self, title: str, rows: dict[str, Counter[str]], cases: Counter[str] | None):
         from rich.table import Table

@@ -60,10 +60,10 @@ def hunt(
         say("hunt-parts", f"{len(before)} of {n} are known{others}: {kept.path}")
 
     def add(result: CaseResult) -> list[str]:
-        found = tally.add(result)
+        wrong = tally.add(result)
         if result not in before:
             kept.add(result)
-        return [f"{outcome.state}: case {result.seed} ({result.family}): {outcome.detail}" for outcome in found]
+        return [f"{outcome.state}: case {result.seed} ({result.family}): {outcome.detail}" for outcome in wrong]
 
     known = {result.seed for result in before}
     fresh = results(

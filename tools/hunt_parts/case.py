@@ -73,7 +73,7 @@ def outcome_of(subject: Subject, solids: bool = True, engraved: bool = False) ->
 
 def moved(subject: Subject, steps: int = STEPS) -> Solution:
     """The motion, a few turns of it at most. Raises MechanismError where it cannot move so."""
-    from mechanisms.stages.solve.refinement import swept_closely
+    from mechanisms.stages.solve.solving import swept_closely
 
     duration = min(subject.duration, MOST * (subject.turn or subject.duration))
     if subject.driven:

@@ -1,6 +1,6 @@
 """Runs by name: every kind, every integrator, both formulations, and each analysis; a result each.
 
-Closed forms, the gallery and the published cases come on top (groups.py, gallery.py, published.py).
+Closed forms, the gallery and the published cases come on top (groups.py, blocks.py, published.py).
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from mbsd import Mechanism, curve
-from mbsd.model.entries import MODELS
+from mbsd.model.forces.contact import DAMPING_MODELS
 from mbsd.results.solution import Solution
 from tools.models.contact_models import ball, box, disc
 from tools.random_mechanisms.machines import solid
@@ -147,7 +147,7 @@ def restitution(rng: np.random.Generator) -> Subject:
     m, kind = Mechanism("restitution"), int(rng.integers(3))
     loss = {
         "restitution": float(rng.uniform(0.2, 1.0)),
-        "damping_model": str(rng.choice(list(MODELS))),
+        "damping_model": str(rng.choice(list(DAMPING_MODELS))),
         "exponent": float(rng.choice([1.0, 1.5, 2.2])),
         "stiffness": float(10 ** rng.uniform(3.5, 6)),
         "radius": 0.1,

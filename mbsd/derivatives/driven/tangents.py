@@ -20,7 +20,7 @@ from mbsd.derivatives.driven.differences import differ, displace
 from mbsd.derivatives.numbers.terms import Along, Change, Left, Terms, stacked
 from mbsd.derivatives.numbers.variants import FOURTH, STEP, Variant, Variants
 from mbsd.derivatives.refused_motions import fits_alone
-from mbsd.model.output_times import refuse_beyond_memory
+from mbsd.model.output_times import check_memory
 
 REACH = 1e-4
 """How far a difference along a direction goes: sizes, rad, and parts of the fastest speed."""
@@ -50,7 +50,7 @@ def refuse_large(terms: Terms, count: int) -> None:
     """Raise ModelError where Jacobians of so many times, their inverses and what is made of them do not fit."""
     packed = terms.packed
     size = max(len(packed.ws.phi), packed.coordinates)
-    refuse_beyond_memory(
+    check_memory(
         f"{packed.name}: derivatives at {count} times of {packed.coordinates} coordinates", 4 * count * size**2,
         "Take fewer steps",
     )  # fmt: skip

@@ -265,7 +265,7 @@ class _Piece:
         return Tangents(*parts)
 
     def _node_by_node(self, begun: np.ndarray | None, at: np.ndarray) -> Made:
-        """By the kernel, some nodes at once, so that what is known of them stays near the processor."""
+        """Differentiate by the kernel, some nodes at once, so that what is known of them stays in the cache."""
         parts: list[Made] = []
         along, per_scale, first = self.along, per_scales(self.terms, self.along), None
         drives = self.terms.packed.drives(along.t)
@@ -286,7 +286,11 @@ class _Piece:
         return Made(*(np.concatenate(part, axis=0 if k < 2 else 1) for k, part in enumerate(joined_parts)))
 
     def _in_arrays(self, begun: np.ndarray, at: np.ndarray) -> Made:
-        """The same in numpy, for friction in joints and contacts that slide as well."""
+        """Differentiate all nodes at once in numpy, for friction in joints and contacts that slide as well.
+
+        There accelerations depend on multipliers in return, so that each node is one dense system of both. The kernel
+        solves for accelerations first and multipliers then, and is several times as fast; so both routes stay.
+        """
         f, numbers, count = self.f, len(self.every), len(self.along.t)
         own = self._own(slice(None))
         position, some = self._opened(own, self._first(begun, own))

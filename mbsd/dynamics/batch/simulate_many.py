@@ -29,7 +29,7 @@ from mbsd.dynamics.measures.quantities import Quantity, quantity_named
 from mbsd.dynamics.runs.run import Request
 from mbsd.dynamics.simulate import PART, simulate, simulated
 from mbsd.model.mechanism import Model
-from mbsd.model.output_times import refuse_beyond_memory
+from mbsd.model.output_times import check_memory
 from mbsd.results.columns import columns
 
 if TYPE_CHECKING:
@@ -124,7 +124,7 @@ def simulations(
     why = _why_single(designs, asked, measures, quantities)
     width = 1 if callable(measures) else sum(column[0].size for column in _empty(measures, 1).values())
     numbers = (3 * width + NUMBERS_OF_A_ROW) * designs.count
-    refuse_beyond_memory(f"{m.name}: {designs.count} simulations", numbers, "Take fewer at once")
+    check_memory(f"{m.name}: {designs.count} simulations", numbers, "Take fewer at once")
     if callable(measures):
         _refuse_no_numbers(designs, asked, measures)
     pausing = asked.integrator in PAUSED_ANYWHERE

@@ -120,7 +120,7 @@ def _take_states(plan: Plan, count: int) -> None:
     states = plan.packed.states
     for k in range(states):
         body = len(plan.links) - states + k
-        plan.take((SLIDE, (body, -1, 0, 0), states - count - k - 1, list(ALONG_X)), (body,))
+        plan.add_group((SLIDE, (body, -1, 0, 0), states - count - k - 1, list(ALONG_X)), (body,))
 
 
 def coordinates_of(plan: Plan, count: int) -> list[Coordinate]:
@@ -159,7 +159,7 @@ class _Trains:
             made = train(plan.places, body, holding[0], angle_sum.constant, angle_sum.shares)
             if made is not None:
                 plan.used |= {joint, holding[0].joint}
-                plan.take(made, (body,))
+                plan.add_group(made, (body,))
                 return True
         return False
 
@@ -215,7 +215,7 @@ def _with_block(choice: Choice) -> Choice | None:
         return None
     plan.used |= {joint for joint in open_joints if {*packed.rows_of(joint)} <= {*block.rows}}
     bodies = [body for body, _, _ in block.tree]
-    plan.take((BLOCK, (bodies[0], -1, 0, 0), len(choice.blocks), []), bodies)
+    plan.add_group((BLOCK, (bodies[0], -1, 0, 0), len(choice.blocks), []), bodies)
     return replace(choice, blocks=(*choice.blocks, tables))
 
 

@@ -152,7 +152,7 @@ class Passages:
         steps = self.steps
         for passage in self.passages:
             if len(passage.left_out):
-                at = steps.put_back(passage.left_out)
+                at = steps.restore(passage.left_out)
                 q, v, a = (np.insert(array, at, 0.0, axis=0) for array in (q, v, a))
         for passage in self.passages:
             rows = passage.covers(steps.times)

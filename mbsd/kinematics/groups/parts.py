@@ -122,11 +122,11 @@ class _Parts:
         for body, hangs, link in tree:
             assert link is not None
             if hangs == WELD:
-                self.plan.take(welded(self.plan.places, body, {"W": link}), (body,))
+                self.plan.add_group(welded(self.plan.places, body, {"W": link}), (body,))
                 continue
             sums = self.trains.sums[body]
             numbers = [*self.plan.places.pin(link), sums.constant, 0.0]
-            self.plan.take((TRAIN, (body, -1, link.other, 0), len(self.train), numbers), (body,))
+            self.plan.add_group((TRAIN, (body, -1, link.other, 0), len(self.train), numbers), (body,))
             self.train.append([len(self.shares), len(sums.shares)])
             self.shares += sums.shares.items()
         return True
@@ -147,7 +147,7 @@ class _Parts:
         self.near += block.near
         self._taken_rows = self._taken_rows | set(rows)
         bodies = [line[BODY] for line in block.tree]
-        self.plan.take((BLOCK, (bodies[0], -1, 0, 0), len(self.head) - 1, []), bodies)
+        self.plan.add_group((BLOCK, (bodies[0], -1, 0, 0), len(self.head) - 1, []), bodies)
 
     def cost(self) -> float:
         """Return cost of one time (us)."""

@@ -182,7 +182,7 @@ class Plan:
                 made = kind.of_one(self.places, body, by_kind) if kinds in kind.one and kind.of_one else None
                 if made is not None:
                     assert kind.of_one is not None
-                    self._take(made, Recipe(kind.of_one, (body,), tuple(links), by_letter=True))
+                    self._use(made, Recipe(kind.of_one, (body,), tuple(links), by_letter=True))
                     return True
         return False
 
@@ -209,7 +209,7 @@ class Plan:
                     made = kind.of_two(self.places, a, b, *links) if kinds in kind.two and kind.of_two else None
                     if made is not None:
                         assert kind.of_two is not None
-                        self._take(made, Recipe(kind.of_two, (a, b), links, by_letter=False))
+                        self._use(made, Recipe(kind.of_two, (a, b), links, by_letter=False))
                         return True
         return False
 
@@ -247,11 +247,11 @@ class Plan:
                  for name in ("angle_offset", "distance_length")]  # fmt: skip
         return all(a.tobytes() == b.tobytes() for a, b in pairs)
 
-    def _take(self, made: Made, recipe: Recipe) -> None:
+    def _use(self, made: Made, recipe: Recipe) -> None:
         self.used.update(link.joint for link in recipe.links)
-        self.take(made, recipe.bodies, recipe)
+        self.add_group(made, recipe.bodies, recipe)
 
-    def take(self, made: Made, bodies: Sequence[int], recipe: Recipe | None = None) -> None:
+    def add_group(self, made: Made, bodies: Sequence[int], recipe: Recipe | None = None) -> None:
         """Add a group, whose bodies are then known."""
         self.taken.append(made)
         self.recipes.append(recipe)

@@ -27,7 +27,8 @@ from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such, shown
 from mbsd.model.body import finite_number
 from mbsd.model.cams.lift import Lift
-from mbsd.model.cams.profile import CamProfile, hermite
+from mbsd.model.cams.profile import CamProfile
+from mbsd.model.laws.numbers import hermite_coefficients
 
 
 def roller_cam(lift: Lift, base_radius: float, roller_radius: float, offset: float = 0.0) -> CamProfile:
@@ -196,7 +197,7 @@ def _rolled(follower: str, lift: Lift, sizes: dict[str, float], centre: Any, way
     # P = R(-theta) w, so P' = R(-theta) (w' - w_perp)
     path = [_turned(theta, w[0]), _turned(theta, w[1] - across[0]), _turned(theta, w[2] - 2 * across[1] - w[0])]
     samples = np.stack(path, axis=-1)
-    pieces = hermite(np.diff(breaks), samples[:, 0], samples[:, 1])
+    pieces = hermite_coefficients(np.diff(breaks), samples[:, 0], samples[:, 1])
     p, dp, ddp = (part[:, 0] for part in path)
     speed = np.hypot(*dp.T)
     normal = np.stack([-dp[:, 1], dp[:, 0]], axis=1) / speed[:, None]  # P runs clockwise: outside is on its left
@@ -227,7 +228,7 @@ def _faced(follower: str, lift: Lift, sizes: dict[str, float], support: Any, pre
     theta = np.stack([breaks[:-1], breaks[1:]], axis=1)
     values = support(theta, ends)
     phi = values[..., 0]  # falls with theta: the pieces are taken from the last to the first
-    pieces = hermite((phi[:, 0] - phi[:, 1])[::-1], values[::-1, 1, 1:], values[::-1, 0, 1:])
+    pieces = hermite_coefficients((phi[:, 0] - phi[:, 1])[::-1], values[::-1, 1, 1:], values[::-1, 0, 1:])
     table = np.column_stack([phi[::-1, 1], pieces])
     h, first, second = values[:, 0, 1:].T
     n = np.stack([np.cos(phi[:, 0]), np.sin(phi[:, 0])], axis=1)

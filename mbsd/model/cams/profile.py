@@ -90,17 +90,3 @@ class CamProfile:
             return self.curvature_radius <= 0
         pitch_radius = self.curvature_radius + self.sizes["roller_radius"]
         return (pitch_radius > 0) & (self.curvature_radius <= 0)
-
-
-def hermite(h: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Return (p, ..., 6) quintics over widths h (p,) from value and two derivatives at both ends.
-
-    Ends are (p, ..., 3); coefficients go from the lowest power up.
-    """
-    h = h.reshape(-1, *[1] * (left.ndim - 2))
-    f, df, ddf = np.moveaxis(left, -1, 0)
-    rise = right[..., 0] - f - h * df - h**2 * ddf / 2
-    slope = (right[..., 1] - df - h * ddf) * h
-    bend = (right[..., 2] - ddf) * h**2
-    c3, c4, c5 = 10 * rise - 4 * slope + bend / 2, -15 * rise + 7 * slope - bend, 6 * rise - 3 * slope + bend / 2
-    return np.stack([f, df, ddf / 2, c3 / h**3, c4 / h**4, c5 / h**5], axis=-1)

@@ -36,8 +36,8 @@ import numpy as np
 
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
-from mbsd.model.cams.profile import hermite
 from mbsd.model.cylinders.piston_motion import ArticulatedMotion, PistonMotion
+from mbsd.model.laws.numbers import hermite_coefficients
 
 HEAT_RELEASE_PIECES, POINTS = 64, 10
 """Numbers of the quadrature over the burning."""
@@ -277,7 +277,7 @@ def closed_phases(
     first_slope = scale * height**power * rate
     second = scale * (height**power * bend + power * height ** (power - 1.0) * slope * rate)
     samples = np.stack([value, first_slope, second], axis=-1)
-    pieces = hermite(np.diff(breaks), samples[:-1], samples[1:])
+    pieces = hermite_coefficients(np.diff(breaks), samples[:-1], samples[1:])
     last = (float(value[-1]), 0.0, 0.0, 0.0, 0.0, 0.0)
     burning = Phase(
         release.start, expansion, (*breaks.tolist(), end + 1.0), (*(tuple(row) for row in pieces.tolist()), last)

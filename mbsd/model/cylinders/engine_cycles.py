@@ -28,7 +28,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
 from mbsd.model.cylinders.cycle import (
@@ -45,6 +44,7 @@ from mbsd.model.cylinders.cycle import (
     numbers_given,
     opened,
 )
+from mbsd.model.laws.law import rising_rows
 
 ATMOSPHERE = 101325.0
 """Pa."""
@@ -240,15 +240,9 @@ def pressure_table(angles: object, pressures: object, turns: int = 2, compressio
     top dead centre. Raises ModelError.
     """
     what = "pressure_table"
-    x, y = number_array(f"{what}: angles", angles), number_array(f"{what}: pressures", pressures)
-    if x.ndim != 1 or x.shape != y.shape or len(x) < FEWEST:
-        raise ModelError(
-            f"{what}: angles {x.shape} and pressures {y.shape} must be two lists of {FEWEST} numbers or more"
-        )
+    x, y = rising_rows(what, FEWEST, angles=angles, pressures=pressures)
     if isinstance(turns, bool) or turns not in (1, 2):
         raise ModelError(f"{what}: turns is {shown(turns)}; a cycle has 2 turns of the crank (four strokes) or 1 (two)")
-    if not (np.diff(x) > 0).all():
-        raise ModelError(f"{what}: angles must rise; angles[{int(np.argmin(np.diff(x) > 0)) + 1}] does not")
     span, period = float(x[-1] - x[0]), 2.0 * math.pi * turns
     if span > period * (1.0 + 1e-12):
         raise ModelError(

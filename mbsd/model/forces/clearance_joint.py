@@ -34,11 +34,12 @@ from typing import Any
 from mbsd.base.arguments import number_pair
 from mbsd.base.errors import ModelError
 from mbsd.model.body import Marker
-from mbsd.model.entries import above_zero, add_force, amounts_given, loss_of, restitution_given
+from mbsd.model.entries import above_zero, add_force, amounts_given, exponent_given
 from mbsd.model.force import Force, ForceKind, Interaction, Press, register_force
+from mbsd.model.forces.contact import loss_of, penalty_potential, restitution_given
 from mbsd.model.joint import Joint
 from mbsd.model.joints.pairs import REVOLUTE
-from mbsd.model.mechanism import Model, number_given
+from mbsd.model.mechanism import Model
 
 
 def _interactions(force, masses):
@@ -46,11 +47,6 @@ def _interactions(force, masses):
     numbers = [p["radius"] - p["clearance"], *(p[key] for key in ("clearance", "stiffness", "exponent", "damping"))]
     numbers += [p["friction"], *p["slip_speeds"], loss_of(p), p["least_approach"]]
     return (Interaction("clearance", force.i, force.j, numbers, remembers=numbers[8] > 0.0),)
-
-
-def _depth_potential(force, depth):
-    power = force.params["exponent"] + 1.0
-    return force.params["stiffness"] * depth**power / power
 
 
 def _pin(force: Force) -> Joint | None:
@@ -81,7 +77,7 @@ CLEARANCE_JOINT = register_force(
         "clearance_joint",
         interactions=_interactions,
         journal=lambda force: (force.params["radius"] - force.params["clearance"], force.params["clearance"]),
-        depth_potential=_depth_potential,
+        depth_potential=penalty_potential,
         ideal=_pin,
         press=_press,
         sign="clearance",
@@ -126,19 +122,14 @@ def clearance_joint(
     this were a pin. None: they start as start_near and start_moving say. A simulation raises SimulationError where it
     would start pressed into the wall ten times harder than by what that pin carries.
     """
-    params: dict[str, Any] = {
-        "clearance": above_zero(m, name, "clearance", clearance),
-        "radius": above_zero(m, name, "radius", radius),
-    }
+    params = above_zero(m, name, clearance=clearance, radius=radius)
     if params["clearance"] >= params["radius"]:
         raise ModelError(
             f"{m.name}: force '{name}': clearance is {clearance:g} m in a bearing of radius {radius:g} m, which leaves "
             "no journal; it must be smaller than the radius. Both are in metres: 0.1 mm is 0.1e-3"
         )
     params |= _elastic_given(m, name, params, stiffness, modulus, poisson, journal_modulus, journal_poisson)
-    params |= amounts_given(m, name, exponent=exponent, damping=damping, friction=friction)
-    if params["exponent"] < 1.0:
-        raise ModelError(f"{m.name}: force '{name}': exponent is {exponent:g}; it must be 1 or more")
+    params |= exponent_given(m, name, exponent) | amounts_given(m, name, damping=damping, friction=friction)
     params |= restitution_given(m, name, damping, restitution, damping_model, least_approach)
     params["slip_speeds"] = _slip_speeds_given(m, name, slip_speeds)
     params["start"] = None if start is None else _start_given(m, name, start, params["radius"])
@@ -157,8 +148,7 @@ def _elastic_given(
 ) -> dict[str, Any]:
     """Params of what the surfaces yield. Raises ModelError."""
     what = f"{m.name}: force '{name}'"
-    given = {"poisson": poisson, "journal_poisson": poisson if journal_poisson is None else journal_poisson}
-    ratios = {key: number_given(m, f"force '{name}': {key}", value) for key, value in given.items()}
+    ratios = {"poisson": poisson, "journal_poisson": poisson if journal_poisson is None else journal_poisson}
     for key, ratio in ratios.items():
         if not 0.0 <= ratio <= 0.5:
             raise ModelError(f"{what}: {key} is {ratio:g}; Poisson's ratio is within 0 .. 0.5")
@@ -170,13 +160,8 @@ def _elastic_given(
     if modulus is None:
         if journal_modulus is not None:
             raise ModelError(f"{what} has journal_modulus= and stiffness=, which says all; leave one of them out")
-        assert stiffness is not None
-        stiff = above_zero(m, name, "stiffness", stiffness)
-        return {"stiffness": stiff, "modulus": None, "journal_modulus": None, **ratios}
-    moduli = {
-        "modulus": above_zero(m, name, "modulus", modulus),
-        "journal_modulus": above_zero(m, name, "journal_modulus", journal_modulus or modulus),
-    }
+        return above_zero(m, name, stiffness=stiffness) | {"modulus": None, "journal_modulus": None, **ratios}
+    moduli = above_zero(m, name, modulus=modulus, journal_modulus=journal_modulus or modulus)
     yielding = sum((1.0 - nu**2) / e for nu, e in zip(ratios.values(), moduli.values(), strict=True))
     outer, inner = sizes["radius"], sizes["radius"] - sizes["clearance"]
     hertz = 4.0 / (3.0 * yielding) * (outer * inner / sizes["clearance"]) ** 0.5

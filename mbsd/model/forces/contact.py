@@ -41,12 +41,58 @@ Source: Pacejka, Bakker 1993, Vehicle System Dynamics 21, suppl. 1 (longitudinal
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
 from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
 from mbsd.model.body import Marker
-from mbsd.model.entries import above_zero, add_force, amounts_given, curves_given, loss_of, restitution_given
+from mbsd.model.entries import above_zero, add_force, amounts_given, curves_given, exponent_given
 from mbsd.model.force import Force, ForceKind, Interaction, register_force
 from mbsd.model.laws.curve import Curve, curve
-from mbsd.model.mechanism import Model, number_given
+from mbsd.model.mechanism import Model
+from mbsd.model.plane_curves import graph_numbers
+
+if TYPE_CHECKING:
+    import numpy as np
+
+DAMPING_MODELS = {
+    "hunt_crossley": lambda e: 1.5 * (1.0 - e),
+    "lankarani_nikravesh": lambda e: 0.75 * (1.0 - e * e),
+    "flores": lambda e: 1.6 * (1.0 - e) / e,
+}
+"""A(e) by the name of the damping model."""
+
+
+def loss_of(params: Mapping[str, Any]) -> float:
+    """A(e) of a force's params, 0 without a restitution."""
+    restitution = params["restitution"]
+    return 0.0 if restitution is None else DAMPING_MODELS[params["damping_model"]](restitution)
+
+
+def restitution_given(
+    m: Model, name: str, damping: float, restitution: float | None, damping_model: str, least_approach: float
+) -> dict[str, float | str | None]:
+    """Params of damping by approach speed. Raises ModelError."""
+    what = f"{m.name}: force '{name}'"
+    if damping_model not in DAMPING_MODELS:
+        raise ModelError(f"{what}: {no_such('damping_model', damping_model, DAMPING_MODELS)}")
+    out = above_zero(m, name, least_approach=least_approach)
+    if restitution is not None:
+        if not 0.0 <= restitution <= 1.0:
+            raise ModelError(f"{what}: restitution is {restitution:g}; it must be within 0 .. 1")
+        if restitution == 0.0 and damping_model == "flores":
+            raise ModelError(
+                f"{what}: restitution is 0, for which the damping of 'flores' is infinite; give a little more, or take "
+                "damping_model='lankarani_nikravesh'"
+            )
+        if damping:
+            raise ModelError(
+                f"{what}: damping is {damping:g} s/m and restitution {restitution:g}; give one of them, as both say "
+                "how much an impact loses"
+            )
+    return {"restitution": restitution, "damping_model": damping_model, **out}
+
 
 CONTACT_OWN = ("radius", "stiffness", "exponent", "damping", "friction", "slip_speed")
 
@@ -56,8 +102,6 @@ def surface(force: Force) -> list[float]:
     profile = force.laws.get("profile")
     if not isinstance(profile, Curve):
         return [0.0] * 13  # a curve of no pieces
-    from mbsd.model.plane_curves import graph_numbers
-
     return graph_numbers(profile).tolist()
 
 
@@ -68,7 +112,8 @@ def _contact_interactions(force, masses):
     return (Interaction("contact", force.i, force.j, numbers, remembers=loss > 0.0),)
 
 
-def _contact_depth_potential(force, depth):
+def penalty_potential(force: Force, depth: np.ndarray) -> np.ndarray:
+    """Return the potential energy (J) of a contact by penalty at depths (m), of any shape."""
     power = force.params["exponent"] + 1.0
     return force.params["stiffness"] * depth**power / power
 
@@ -78,7 +123,7 @@ CONTACT = register_force(
         "contact",
         interactions=_contact_interactions,
         surface=surface,
-        depth_potential=_contact_depth_potential,
+        depth_potential=penalty_potential,
         example=lambda m, i, j: m.contact(
             "example",
             i,
@@ -123,13 +168,10 @@ def contact(
     damping is divided by the speed at which the contact began, ``least_approach`` (m/s) at least. Simulated by
     "dop853" alone.
     """
-    params = amounts_given(
-        m, name, stiffness=stiffness, exponent=exponent, damping=damping, friction=friction, radius=radius
-    )
-    if params["exponent"] < 1.0:
-        raise ModelError(f"{m.name}: force '{name}': exponent is {exponent:g}; it must be 1 or more")
+    params = amounts_given(m, name, stiffness=stiffness, damping=damping, friction=friction, radius=radius)
+    params |= exponent_given(m, name, exponent)
     params |= restitution_given(m, name, damping, restitution, damping_model, least_approach)
-    params["slip_speed"] = above_zero(m, name, "slip_speed", slip_speed)
+    params |= above_zero(m, name, slip_speed=slip_speed)
     laws = {} if profile is None else curves_given(m, name, profile=profile)
     return add_force(m, CONTACT, name, surface, body, params, laws)
 
@@ -142,16 +184,12 @@ def _tyre_interactions(force, masses):
     return (Interaction("tyre", force.i, force.j, numbers),)
 
 
-def _tyre_depth_potential(force, depth):
-    return 0.5 * force.params["stiffness"] * depth**2
-
-
 TYRE = register_force(
     ForceKind(
         "tyre",
         interactions=_tyre_interactions,
         surface=surface,
-        depth_potential=_tyre_depth_potential,
+        depth_potential=lambda force, depth: 0.5 * force.params["stiffness"] * depth**2,
         example=lambda m, i, j: m.tyre("example", i, j, 4.0, 300.0, damping=3.0, grip=0.9, standstill=0.3),
     )
 )
@@ -179,8 +217,6 @@ def tyre(
     the magic formula pull by longitudinal slip, which is kept finite below ``standstill`` (m/s).
     """
     params = amounts_given(m, name, stiffness=stiffness, damping=damping, grip=grip, slope=slope, shape=shape)
-    params["radius"] = above_zero(m, name, "radius", radius)
-    params["standstill"] = above_zero(m, name, "standstill", standstill)
-    params["curvature"] = number_given(m, f"force '{name}': curvature", curvature)
+    params |= above_zero(m, name, radius=radius, standstill=standstill) | {"curvature": curvature}
     laws = {} if profile is None else curves_given(m, name, profile=profile)
     return add_force(m, TYRE, name, road, hub, params, laws)

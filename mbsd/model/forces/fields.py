@@ -38,7 +38,7 @@ from mbsd.model.entries import (
 )
 from mbsd.model.force import Element, Force, ForceKind, Interaction, Term, register_force
 from mbsd.model.laws.formulas import harmonic
-from mbsd.model.mechanism import Model, number_given
+from mbsd.model.mechanism import Model
 
 
 def _drag_interactions(force, packed):
@@ -93,11 +93,7 @@ def gravitation(m: Model, name: str, i: Marker, j: Marker, factor: float, expone
 
     Masses attract each other with the factor -G m1 m2 and the exponent -2.
     """
-    params = {
-        "factor": number_given(m, f"force '{name}': factor", factor),
-        "exponent": number_given(m, f"force '{name}': exponent", exponent),
-    }
-    return add_force(m, GRAVITATION, name, i, j, params)
+    return add_force(m, GRAVITATION, name, i, j, {"factor": factor, "exponent": exponent})
 
 
 def _rotating_frame_interactions(force, masses):

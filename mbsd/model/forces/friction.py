@@ -69,10 +69,9 @@ def friction(
         m, name, coefficient=coefficient, viscous=viscous, radius=radius, length=length, preload=preload
     )
     params["static"] = params["coefficient"] if static is None else amounts_given(m, name, static=static)["static"]
-    params["stribeck"] = above_zero(m, name, "stribeck", stribeck)
-    params["sticks"] = bool(sticks)
+    params |= {**above_zero(m, name, stribeck=stribeck), "sticks": bool(sticks)}
     if not sticks:
-        params["slip_speed"] = above_zero(m, name, "slip_speed", 1e-3 if slip_speed is None else slip_speed)
+        params |= above_zero(m, name, slip_speed=1e-3 if slip_speed is None else slip_speed)
     elif slip_speed is not None:
         raise ModelError(f"{what}: a joint that sticks does not creep; give slip_speed or sticks=True, not both")
     if (params["radius"] > 0) != (known.kind.pair == "pin"):

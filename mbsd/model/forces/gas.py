@@ -34,9 +34,10 @@ from mbsd.model.entries import (
     above_zero,
     add_force,
     amounts_given,
+    exponent_given,
 )
 from mbsd.model.force import Chamber, Element, Force, ForceKind, Interaction, Masses, Term, marker_place, register_force
-from mbsd.model.mechanism import Model, number_given
+from mbsd.model.mechanism import Model
 
 
 def _elements(force):
@@ -79,8 +80,8 @@ def gas(
     params = amounts_given(
         m, name, area=area, pressure=pressure, clearance=clearance, exponent=exponent, outside=outside
     )
-    params["at"] = number_given(m, f"force '{name}': at", at)
-    if params["at"] + params["clearance"] <= 0:
+    params["at"] = at
+    if at + clearance <= 0:
         raise ModelError(f"{m.name}: force '{name}': at + clearance is {at + clearance:g} m; it must be positive")
     return add_force(m, GAS, name, cylinder, piston, params)
 
@@ -160,24 +161,19 @@ def gas_strut(
     params = amounts_given(
         m, name, compression_damping=compression_damping, extension_damping=extension_damping, end_way=end_way,
         friction=friction, stop_damping=stop_damping,
+        end_damping=extension_damping if end_damping is None else end_damping,
     )  # fmt: skip
-    for key, value in (
-        ("force", force), ("length", length), ("stroke", stroke), ("slip_speed", slip_speed),
-        ("stop_stiffness", stop_stiffness),
-    ):  # fmt: skip
-        params[key] = above_zero(m, name, key, value)
-    params["ratio"] = number_given(m, f"force '{name}': ratio", ratio)
-    params["exponent"] = number_given(m, f"force '{name}': exponent", exponent)
-    end = extension_damping if end_damping is None else end_damping
-    params |= amounts_given(m, name, end_damping=end)
+    params |= above_zero(
+        m, name, force=force, length=length, stroke=stroke, slip_speed=slip_speed, stop_stiffness=stop_stiffness
+    )
+    params["ratio"] = ratio
     what = f"{m.name}: force '{name}'"
-    if not params["ratio"] > 1.0:
+    if not ratio > 1.0:
         raise ModelError(
             f"{what}: ratio is {ratio:g}; it must be above 1, as the gas pushes harder when it is pushed in"
         )
-    if params["exponent"] < 1.0:
-        raise ModelError(f"{what}: exponent is {exponent:g}; it must be 1 or more")
-    if not params["stroke"] < params["length"]:
+    params |= exponent_given(m, name, exponent)
+    if not stroke < length:
         raise ModelError(
             f"{what}: stroke is {stroke:g} m, but extended it is {length:g} m long; a strut is longer than its stroke"
         )

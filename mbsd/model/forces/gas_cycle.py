@@ -25,7 +25,7 @@ from mbsd.model.cylinders.engine_cycles import PressureTable, four_stroke
 from mbsd.model.cylinders.engine_cylinder import EngineCylinder, cylinder_of, given_motion
 from mbsd.model.entries import above_zero, add_force, amounts_given
 from mbsd.model.force import Chamber, CrankCycle, Element, Force, ForceKind, Interaction, Masses, register_force
-from mbsd.model.mechanism import Model, number_given, own_body
+from mbsd.model.mechanism import Model, own_body
 
 PHASE = 6
 """Numbers of a phase, as mbsd/equations/interactions/gas_cycle.py reads them."""
@@ -138,12 +138,9 @@ def gas_cycle(
             "pressure_table(...)"
         )
     params = amounts_given(m, name, outside=outside)
-    params |= {"crank": body.name, "cycle": cycle, "bore": above_zero(m, name, "bore", bore), "clockwise": clockwise}
-    for key, value in (("stroke", stroke), ("rod", rod)):
-        params[key] = None if value is None else above_zero(m, name, key, value)
-    for key, value in (("fires_at", fires_at), ("top", top)):
-        params[key] = None if value is None else number_given(m, f"{what}: {key}", value)
-    params["offset"] = number_given(m, f"{what}: offset", offset)
+    params |= {"crank": body.name, "cycle": cycle, "clockwise": clockwise}
+    params |= above_zero(m, name, bore=bore, stroke=stroke, rod=rod)
+    params |= {"fires_at": fires_at, "top": top, "offset": offset}
     if stroke is None and (rod is not None or offset != 0.0):
         raise ModelError(
             f"{m.name}: {what}: rod and offset go with stroke; give stroke= too, or leave them to the joints"

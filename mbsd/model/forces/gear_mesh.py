@@ -30,10 +30,11 @@ import numpy as np
 from mbsd.base.arguments import number_pair
 from mbsd.base.errors import ModelError
 from mbsd.model.body import Marker
-from mbsd.model.entries import above_zero, add_force, amounts_given, loss_of, restitution_given, wheels_given
+from mbsd.model.entries import above_zero, add_force, amounts_given, exponent_given, wheels_given
 from mbsd.model.force import Force, ForceKind, Interaction, Mesh, register_force
+from mbsd.model.forces.contact import loss_of, penalty_potential, restitution_given
 from mbsd.model.joint import Joint, JointKind
-from mbsd.model.mechanism import Model, number_given
+from mbsd.model.mechanism import Model
 from mbsd.model.teeth import with_radii
 
 ROLLING = JointKind(
@@ -107,16 +108,11 @@ def _rolling(force: Force) -> Joint | None:
     return Joint(ROLLING, force.name, force.i, force.j, {"radius_i": first, "radius_j": second})
 
 
-def _depth_potential(force, depth):
-    power = force.params["exponent"] + 1.0
-    return force.params["stiffness"] * depth**power / power
-
-
 GEAR_MESH = register_force(
     ForceKind(
         "gear_mesh",
         interactions=_interactions,
-        depth_potential=_depth_potential,
+        depth_potential=penalty_potential,
         mesh=Mesh(_rolled, _flanks, _pitch, _period),
         ideal=_rolling,
         sign="mesh",
@@ -167,31 +163,28 @@ def gear_mesh(
     sized = with_radii(wheels)
     if internal and sized["radius_i"] <= sized["radius_j"]:
         raise ModelError(f"{what} is internal, so the first gear is the ring and must be the larger; give it first")
-    params: dict[str, Any] = {**wheels, "internal": bool(internal)}
-    params["stiffness"] = above_zero(m, name, "stiffness", stiffness)
-    params |= amounts_given(m, name, backlash=backlash, exponent=exponent, damping=damping)
-    params["pressure_angle"] = number_given(m, f"force '{name}': pressure_angle", pressure_angle)
-    if not 0.0 < params["pressure_angle"] < math.pi / 4:
+    params: dict[str, Any] = {**wheels, "internal": bool(internal), **above_zero(m, name, stiffness=stiffness)}
+    params |= amounts_given(m, name, backlash=backlash, damping=damping) | {"pressure_angle": pressure_angle}
+    if not 0.0 < pressure_angle < math.pi / 4:
         raise ModelError(
             f"{what}: pressure_angle is {pressure_angle:g} rad; it must be above 0 and below pi/4. 20 degrees are "
             "math.radians(20)"
         )
-    if params["exponent"] < 1.0:
-        raise ModelError(f"{what}: exponent is {exponent:g}; it must be 1 or more")
-    _refuse_wide(what, params)
+    params |= exponent_given(m, name, exponent)
+    _check_backlash(what, params)
     params |= restitution_given(m, name, damping, restitution, damping_model, least_approach)
     params["phase"] = None if phase is None else number_pair(f"{what}: phase (rad)", phase)
-    params["start"] = None if start is None else number_given(m, f"force '{name}': start", start)
-    if params["start"] and phase is not None:
+    params["start"] = start
+    if start and phase is not None:
         raise ModelError(f"{what} has start= and phase=, which both say where in its play it is; leave one of them out")
-    if params["start"] and abs(params["start"]) > 0.5 * params["backlash"]:
+    if start and abs(start) > 0.5 * backlash:
         raise ModelError(
             f"{what}: start is {start:g} m, beyond half of the backlash of {backlash:g} m, where flanks are pressed in"
         )
     return add_force(m, GEAR_MESH, name, i, j, params)
 
 
-def _refuse_wide(what: str, params: Mapping[str, Any]) -> None:
+def _check_backlash(what: str, params: Mapping[str, Any]) -> None:
     """Raise ModelError for a backlash that leaves no teeth."""
     least = min(with_radii(params)[key] for key in ("radius_i", "radius_j"))
     room = 0.5 * math.pi * params["module"] if params.get("teeth") is not None else least

@@ -133,8 +133,8 @@ def _check(model: str, force: Force, times: np.ndarray, length: np.ndarray, stat
                     f"{where}: the steps are too long for its oil. Take method='radau' or 'dop853', or a smaller step"
                 )
             raise ModelError(
-                f"{where}: oil without air would be pulled, and real oil tears there. Give air=0.005, of which bubbles "
-                "keep the pressure above zero, let oil in faster (rated_flow, orifice, valve, tank), or pull less"
+                f"{where}: it becomes negative, where real oil cavitates. Give air=0.005, whose bubbles keep the "
+                "pressure above zero, let oil in faster (rated_flow, orifice, valve, tank), or pull less"
             )
         if pressure[k] < CAVITATES:
             warn(
@@ -209,24 +209,19 @@ def hydraulic_cylinder(
 
     ``air``: part of the volume that is free air at 101325 Pa; its bubbles make the oil soft at low pressure and keep it
     above zero, and a motion in which it cavitates is warned of. Without air, a motion in which a pressure falls below
-    zero is refused. Pressures at the start are those of a steady flow, and behind a closed valve those that carry the
-    load, unless ``pressure_a`` and ``pressure_b`` are given. ``outside``: pressure around the rod. ``friction`` (N)
-    is reached at some ``slip_speed`` (m/s). Beyond both ends stops push back, as those of :meth:`gas_strut`; by default
-    the supply presses them in by a thousandth of the stroke.
+    zero raises ModelError. Pressures at the start are those of a steady flow, and behind a closed valve those that
+    carry the load, unless ``pressure_a`` and ``pressure_b`` are given. ``outside``: pressure around the rod.
+    ``friction`` (N) is reached at some ``slip_speed`` (m/s). Beyond both ends stops push back, as those of
+    :meth:`gas_strut`; by default the supply presses them in by a thousandth of the stroke.
     """
     params = amounts_given(
         m, name, rod=rod, air=air, leak=leak, tank=tank, outside=outside, friction=friction, stop_damping=stop_damping
     )
-    for key, value in (
-        ("bore", bore), ("stroke", stroke), ("retracted", retracted), ("supply", supply), ("rated_drop", rated_drop),
-        ("density", density), ("bulk_modulus", bulk_modulus), ("transition", transition), ("slip_speed", slip_speed),
-    ):  # fmt: skip
-        params[key] = above_zero(m, name, key, value)
-    for key, value in (
-        ("rated_flow", rated_flow), ("orifice", orifice), ("dead_a", dead_a), ("dead_b", dead_b),
-        ("pressure_a", pressure_a), ("pressure_b", pressure_b), ("stop_stiffness", stop_stiffness),
-    ):  # fmt: skip
-        params[key] = None if value is None else above_zero(m, name, key, value)
+    params |= above_zero(
+        m, name, bore=bore, stroke=stroke, retracted=retracted, supply=supply, rated_drop=rated_drop, density=density,
+        bulk_modulus=bulk_modulus, transition=transition, slip_speed=slip_speed, rated_flow=rated_flow, orifice=orifice,
+        dead_a=dead_a, dead_b=dead_b, pressure_a=pressure_a, pressure_b=pressure_b, stop_stiffness=stop_stiffness,
+    )  # fmt: skip
     what = f"{m.name}: force '{name}'"
     if not rod < bore:
         raise ModelError(f"{what}: rod is {rod:g} m, but the bore only {bore:g} m; the rod is inside of the bore")

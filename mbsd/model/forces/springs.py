@@ -69,7 +69,7 @@ from mbsd.model.entries import (
     spring_amounts,
 )
 from mbsd.model.force import Element, Force, ForceKind, Interaction, Term, register_force
-from mbsd.model.mechanism import Model, number_given
+from mbsd.model.mechanism import Model
 
 
 def constant_terms(force: Force, free: str) -> tuple[Term, Term]:
@@ -237,7 +237,7 @@ def bushing(
     free_angle: float = 0.0,
 ) -> Force:
     """Springs and dampers along x and y of marker i and in turning (N/m, N/m, N m/rad), damping alike."""
-    params: dict[str, Any] = {"free_angle": number_given(m, f"force '{name}': free_angle", free_angle)}
+    params: dict[str, Any] = {"free_angle": free_angle}
     for what, values in (("stiffness", stiffness), ("damping", damping)):
         values = several_numbers(f"{m.name}: force '{name}': {what}", values, 3, "give (x, y, turning)")
         params[what] = tuple(amounts_given(m, name, **{f"{what}[{k}]": v for k, v in enumerate(values)}).values())
@@ -279,14 +279,9 @@ def shaft(
     A ``bore`` (m) makes it hollow. ``damping`` in N m s/rad; no torque where second - first is ``free_angle`` (rad).
     The shear modulus is that of steel unless given.
     """
-    params: dict[str, Any] = {
-        "length": above_zero(m, name, "length", length),
-        "diameter": above_zero(m, name, "diameter", diameter),
-        "shear_modulus": above_zero(m, name, "shear_modulus", shear_modulus),
-        "free_angle": number_given(m, f"force '{name}': free_angle", free_angle),
-        **amounts_given(m, name, bore=bore, damping=damping),
-    }
-    if params["bore"] >= params["diameter"]:
+    params = above_zero(m, name, length=length, diameter=diameter, shear_modulus=shear_modulus)
+    params |= {"free_angle": free_angle, **amounts_given(m, name, bore=bore, damping=damping)}
+    if bore >= diameter:
         raise ModelError(
             f"{m.name}: force '{name}': bore is {bore:g} m in a shaft of {diameter:g} m diameter; it must be smaller"
         )

@@ -19,16 +19,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from mbsd.base.errors import ModelError, ModelWarning
+from mbsd.base.names import shown
+from mbsd.base.warning import warn
 from mbsd.model.body import Marker
-from mbsd.model.entries import cam_given, join
-from mbsd.model.joint import Joint, JointKind, cam_numbers, register_joint
+from mbsd.model.cams.followers import cam_from
+from mbsd.model.cams.profile import CamProfile
+from mbsd.model.entries import join
+from mbsd.model.joint import Joint, JointKind, register_joint
 from mbsd.model.mechanism import Model
-
-if TYPE_CHECKING:
-    from mbsd.model.cams.profile import CamProfile
-
 
 ROLLER_LIFT = {"segments": [[math.pi, 0.5, "cycloidal"], [math.pi, 0.0, "3-4-5"]], "start": 0.0}
 
@@ -43,7 +44,7 @@ CAM_ROLLER = register_joint(
             j,
             {"follower": "roller", "lift": ROLLER_LIFT, "base_radius": 1.5, "roller_radius": 0.3, "offset": 0.1},
         ),
-        numbers=lambda params: [cam_numbers(params["profile"])],
+        numbers=lambda params: [cam_from(params["profile"]).numbers],
     )
 )
 
@@ -54,7 +55,7 @@ def cam_roller(m: Model, name: str, cam: Marker, roller: Marker, profile: CamPro
 
     ``profile``: from mbsd.cams.roller_cam or oscillating_roller_cam. Warns (ModelWarning) of an undercut.
     """
-    return join(m, CAM_ROLLER, name, cam, roller, None, profile=cam_given(m, name, profile, flat=False))
+    return join(m, CAM_ROLLER, name, cam, roller, None, **_given(m, name, profile, flat=False))
 
 
 FLAT_LIFT = {"segments": [[math.pi, 0.2, "cycloidal"], [math.pi, 0.0, "3-4-5"]], "start": 0.0}
@@ -66,7 +67,7 @@ CAM_FLAT = register_joint(
         example=lambda m, i, j: m.cam_flat(
             "example", i, j, {"follower": "flat", "lift": FLAT_LIFT, "base_radius": 1.5}
         ),
-        numbers=lambda params: [cam_numbers(params["profile"])],
+        numbers=lambda params: [cam_from(params["profile"]).numbers],
         touching="place",
     )
 )
@@ -80,4 +81,23 @@ def cam_flat(m: Model, name: str, cam: Marker, face: Marker, profile: CamProfile
 
     ``profile``: from mbsd.cams.flat_cam or oscillating_flat_cam. Warns (ModelWarning) of an undercut.
     """
-    return join(m, CAM_FLAT, name, cam, face, None, profile=cam_given(m, name, profile, flat=True))
+    return join(m, CAM_FLAT, name, cam, face, None, **_given(m, name, profile, flat=True))
+
+
+def _given(m: Model, name: str, profile: CamProfile | Mapping[str, Any], flat: bool) -> dict[str, Any]:
+    """Plain data of a cam for this kind of follower; warns of an undercut. Raises ModelError."""
+    if not isinstance(profile, CamProfile):
+        if not isinstance(profile, Mapping):
+            raise ModelError(f"{m.name}: joint '{name}' needs a profile from mbsd.cams, got {shown(profile)}")
+        try:
+            profile = cam_from(profile)
+        except ModelError as error:
+            raise ModelError(f"{m.name}: joint '{name}': {error}") from error
+    if profile.flat != flat:
+        raise ModelError(
+            f"{m.name}: joint '{name}' is {'cam_flat' if flat else 'cam_roller'}, but its profile is for the "
+            f"follower '{profile.follower}'; use {'cam_roller' if flat else 'cam_flat'}"
+        )
+    if profile.undercut:
+        warn(f"{m.name}: joint '{name}': {profile.problems[0]}", ModelWarning)
+    return {"profile": profile.data}

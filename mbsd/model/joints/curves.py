@@ -7,7 +7,7 @@ Point on curve: marker j lies on a smooth curve fixed to marker i, or at a fixed
 The curve is a quintic spline through points in the axes of marker i. D > 0 is on its left: the centre of a roller or a
 disc of radius D that slides. The reaction on body j is a force across the curve. Where the curve crosses itself or the
 straight lines beyond its ends, a simulation goes on along the branch the point is on (mbsd/arrays/curve_branches.py),
-and a sweep that may have left it is refused.
+and a sweep that may have left it raises an error.
 
 Rolling disc: a disc of radius r about marker j rolls without slip on the x axis of marker i.
 
@@ -27,7 +27,7 @@ The disc has the radius r, and the curve is fixed to marker i.
 
 c(u) is the curve's point nearest to the disc's centre, s and beta the arc length and tangent angle there, a the disc's
 angle. The curve is a quintic spline through points in the axes of marker i, a terrain from left to right. Where it is
-bent tighter than the disc it would touch twice; the model refuses that.
+bent tighter than the disc it would touch twice; that raises an error.
 """
 
 from __future__ import annotations
@@ -40,14 +40,18 @@ import numpy as np
 from mbsd.model.body import Marker
 from mbsd.model.entries import join, phase_given, radii_given
 from mbsd.model.joint import Joint, JointKind, register_joint
-from mbsd.model.mechanism import Model, number_given
+from mbsd.model.mechanism import Model
+from mbsd.model.plane_curves import (
+    check_curvature,
+    checked_points,
+    curve_numbers,
+    curve_pieces,
+    disc_numbers,
+    farthest_step,
+)
 
 
 def _point_on_curve_numbers(params: Mapping[str, Any]) -> list[np.ndarray]:
-    import numpy as np
-
-    from mbsd.model.plane_curves import curve_numbers, curve_pieces, farthest_step
-
     closed, distance = params["closed"], params["distance"]
     pieces = curve_pieces(np.array(params["points"], float), closed)
     return [curve_numbers(*pieces, closed, distance, 0.0, farthest_step(*pieces, closed, distance))]
@@ -87,11 +91,7 @@ def point_on_curve(
 
     ``distance`` (m) is how far it stays to the left of the curve; beyond its ends an open curve goes on straight.
     """
-    from mbsd.model.plane_curves import checked_points
-
-    what = f"{m.name}: joint '{name}'"
-    plain = checked_points(what, points, closed)
-    distance = number_given(m, f"joint '{name}': distance", distance)
+    plain = checked_points(f"{m.name}: joint '{name}'", points, closed)
     return join(m, POINT_ON_CURVE, name, curve, point, None, points=plain, closed=bool(closed), distance=distance)
 
 
@@ -116,12 +116,6 @@ def rolling_disc(
     return join(m, ROLLING_DISC, name, line, disc, None, **radii, phase=phase_given(m, name, phase))
 
 
-def _rolling_on_curve_numbers(params: Mapping[str, Any]) -> list[np.ndarray]:
-    from mbsd.model.plane_curves import disc_numbers
-
-    return disc_numbers(params, follows=True)
-
-
 ROLLING_ON_CURVE = register_joint(
     JointKind(
         "rolling_on_curve",
@@ -129,7 +123,7 @@ ROLLING_ON_CURVE = register_joint(
         example=lambda m, i, j: m.rolling_on_curve(
             "example", i, j, [(-6, -1), (-4, -0.5), (-2, 0), (0, -0.3), (2, -0.5), (4, 0.2), (6, 0.1)], radius=0.2
         ),
-        numbers=_rolling_on_curve_numbers,
+        numbers=lambda params: disc_numbers(params, follows=True),
         lengths=("radius", "points"),
         touching="curve",
     )
@@ -152,9 +146,7 @@ def rolling_on_curve(
 
     The points are in the axes of marker ``curve`` (m); beyond its ends an open curve goes on straight.
     """
-    from mbsd.model.plane_curves import checked_points, refuse_tight
-
     what = f"{m.name}: joint '{name}'"
     radii, plain = radii_given(m, name, radius=radius), checked_points(what, points, closed)
-    refuse_tight(what, plain, closed, radii["radius"])
+    check_curvature(what, plain, closed, radii["radius"])
     return join(m, ROLLING_ON_CURVE, name, curve, disc, None, points=plain, closed=bool(closed), **radii)

@@ -45,7 +45,7 @@ from mbsd.base.errors import ModelError
 from mbsd.model.body import Marker
 from mbsd.model.entries import Limits, join, limits_given
 from mbsd.model.joint import Joint, JointKind, register_joint
-from mbsd.model.mechanism import SHORTEST, Model, number_given
+from mbsd.model.mechanism import SHORTEST, Model
 
 REVOLUTE = register_joint(JointKind("revolute", ("point",), example=lambda m, i, j: m.revolute("example", i, j)))
 
@@ -98,7 +98,6 @@ DISTANCE = register_joint(
 @DISTANCE.adds
 def distance(m: Model, name: str, i: Marker, j: Marker, length: float) -> Joint:
     """A massless rod of the given length (m) between the points of markers i and j."""
-    length = number_given(m, f"joint '{name}': length", length)
     if length < SHORTEST:
         raise ModelError(
             f"{m.name}: distance joint '{name}' has length {length:g} m; it must be positive, {SHORTEST:g} m or "

@@ -11,16 +11,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
-
-if TYPE_CHECKING:
-    from mbsd.model.laws.numbers import Compiled
+from mbsd.model.laws.law import rising_rows
+from mbsd.model.laws.numbers import Compiled, polynomial_pieces
 
 KINDS = ("smooth", "linear", "spline")
 
@@ -64,23 +62,11 @@ class Curve:
 
     def compiled(self, first: float, last: float) -> Compiled:
         """As kernels evaluate it."""
-        from mbsd.model.laws.numbers import pieces
-
-        poly = self.pieces
-        keep = np.flatnonzero(np.diff(poly.x) > 0)
-        coefficients = np.zeros((len(keep), 6))
-        coefficients[:, : len(poly.c)] = poly.c[::-1, keep].T
-        return pieces(np.append(poly.x[keep], poly.x[keep[-1] + 1]), coefficients)
+        return polynomial_pieces(self.pieces)
 
 
 def curve(x: object, y: object, kind: str = "smooth") -> Curve:
     """A curve through the points (x, y), x rising (m, rad, m/s or rad/s), y a force or torque (N, N m)."""
-    at, value = number_array("curve: x", x), number_array("curve: y", y)
     if not isinstance(kind, str) or kind not in KINDS:
         raise ModelError(f"curve: {no_such('kind', kind, KINDS)}")
-    fewest = 4 if kind == "spline" else 2
-    if at.ndim != 1 or at.shape != value.shape or len(at) < fewest:
-        raise ModelError(f"curve: x {at.shape} and y {value.shape} must be two lists of {fewest} numbers or more")
-    if not (np.diff(at) > 0).all():
-        raise ModelError(f"curve: x must rise; x[{int(np.argmin(np.diff(at) > 0)) + 1}] does not")
-    return Curve(at, value, kind)
+    return Curve(*rising_rows("curve", 4 if kind == "spline" else 2, x=x, y=y), kind)

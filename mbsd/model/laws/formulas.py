@@ -17,19 +17,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.base.codes import CYCLOIDAL, HARMONIC, POLYNOMIAL
 from mbsd.base.errors import ModelError
-from mbsd.model.laws.law import Motion, Times, refuse_non_finite
-
-if TYPE_CHECKING:
-    from mbsd.model.laws.numbers import Compiled
+from mbsd.model.laws.law import Formula, Motion, Times, check_finite, within
+from mbsd.model.laws.numbers import Compiled
 
 
 @dataclass(frozen=True)
-class ConstantRate(Motion):
+class ConstantRate(Formula):
     """See :func:`constant_rate`."""
 
     rate: float
@@ -40,19 +38,12 @@ class ConstantRate(Motion):
         """One turn, for an angle."""
         return 2 * math.pi / abs(self.rate) if self.rate else None
 
-    @property
-    def given_derivatives(self) -> bool:
-        """No: they follow from the numbers."""
-        return False
-
     def knots(self, first: float, last: float) -> np.ndarray:
         """None: it never turns back."""
         return np.zeros(0)
 
     def compiled(self, first: float, last: float) -> Compiled:
         """As kernels evaluate it."""
-        from mbsd.base.codes import POLYNOMIAL
-
         return POLYNOMIAL, np.array([self.start, self.rate], float)
 
     def __call__(self, times: Times) -> np.ndarray:
@@ -65,12 +56,12 @@ class ConstantRate(Motion):
 
 def constant_rate(rate: float, start: float = 0.0) -> Motion:
     """``start + rate t``: rad and rad/s for an angle, m and m/s for a length."""
-    refuse_non_finite("constant_rate", rate=rate, start=start)
+    check_finite("constant_rate", rate=rate, start=start)
     return ConstantRate(float(rate), float(start))
 
 
 @dataclass(frozen=True)
-class Harmonic(Motion):
+class Harmonic(Formula):
     """See :func:`harmonic`."""
 
     amplitude: float
@@ -83,11 +74,6 @@ class Harmonic(Motion):
         """One swing."""
         return 2 * math.pi / abs(self.rate) if self.rate else None
 
-    @property
-    def given_derivatives(self) -> bool:
-        """No: they follow from the numbers."""
-        return False
-
     def knots(self, first: float, last: float) -> np.ndarray:
         """Where it turns back."""
         if not (self.rate and self.amplitude):
@@ -98,8 +84,6 @@ class Harmonic(Motion):
 
     def compiled(self, first: float, last: float) -> Compiled:
         """As kernels evaluate it."""
-        from mbsd.base.codes import HARMONIC
-
         return HARMONIC, np.array([self.amplitude, self.rate, self.phase, self.mean], float)
 
     def __call__(self, times: Times) -> np.ndarray:
@@ -118,31 +102,24 @@ class Harmonic(Motion):
 
 def harmonic(amplitude: float, rate: float, phase: float = 0.0, mean: float = 0.0) -> Motion:
     """``mean + amplitude sin(rate t + phase)``; rate in rad/s."""
-    refuse_non_finite("harmonic", amplitude=amplitude, rate=rate, phase=phase, mean=mean)
+    check_finite("harmonic", amplitude=amplitude, rate=rate, phase=phase, mean=mean)
     return Harmonic(float(amplitude), float(rate), float(phase), float(mean))
 
 
 @dataclass(frozen=True)
-class Polynomial(Motion):
+class Polynomial(Formula):
     """See :func:`polynomial`."""
 
     coefficients: tuple[float, ...]
-
-    @property
-    def given_derivatives(self) -> bool:
-        """No: they follow from the numbers."""
-        return False
 
     def knots(self, first: float, last: float) -> np.ndarray:
         """Where it turns back."""
         roots = np.polynomial.Polynomial(self.coefficients).deriv().roots()
         turns = np.sort(roots.real[np.abs(roots.imag) <= 1e-6 * np.abs(roots)])
-        return turns[(turns >= first) & (turns <= last)]
+        return within(turns, first, last)
 
     def compiled(self, first: float, last: float) -> Compiled:
         """As kernels evaluate it."""
-        from mbsd.base.codes import POLYNOMIAL
-
         return POLYNOMIAL, np.array(self.coefficients, float)
 
     def __call__(self, times: Times) -> np.ndarray:
@@ -155,12 +132,12 @@ def polynomial(*coefficients: float) -> Motion:
     """``c0 + c1 t + c2 t^2 + ...``"""
     if not coefficients:
         raise ModelError("polynomial: give at least one coefficient, c0 first")
-    refuse_non_finite("polynomial", **{f"c{k}": c for k, c in enumerate(coefficients)})
+    check_finite("polynomial", **{f"c{k}": c for k, c in enumerate(coefficients)})
     return Polynomial(tuple(float(c) for c in coefficients))
 
 
 @dataclass(frozen=True)
-class Cycloidal(Motion):
+class Cycloidal(Formula):
     """See :func:`cycloidal`."""
 
     rise: float
@@ -172,20 +149,12 @@ class Cycloidal(Motion):
         if self.duration <= 0:
             raise ModelError(f"cycloidal: duration is {self.duration} s; it must be positive")
 
-    @property
-    def given_derivatives(self) -> bool:
-        """No: they follow from the numbers."""
-        return False
-
     def knots(self, first: float, last: float) -> np.ndarray:
         """Where it begins and ends; it never turns back."""
-        times = np.array([self.begin, self.begin + self.duration])
-        return times[(times >= first) & (times <= last)]
+        return within(np.array([self.begin, self.begin + self.duration]), first, last)
 
     def compiled(self, first: float, last: float) -> Compiled:
         """As kernels evaluate it."""
-        from mbsd.base.codes import CYCLOIDAL
-
         return CYCLOIDAL, np.array([self.rise, self.duration, self.begin, self.start], float)
 
     def __call__(self, times: Times) -> np.ndarray:
@@ -204,5 +173,5 @@ class Cycloidal(Motion):
 
 def cycloidal(rise: float, duration: float, begin: float = 0.0, start: float = 0.0) -> Motion:
     """Return a rise from ``start`` by ``rise`` within ``duration`` (s) after ``begin``, else at rest."""
-    refuse_non_finite("cycloidal", rise=rise, duration=duration, begin=begin, start=start)
+    check_finite("cycloidal", rise=rise, duration=duration, begin=begin, start=start)
     return Cycloidal(float(rise), float(duration), float(begin), float(start))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,10 +12,10 @@ from mbsd.base.arguments import finite_number, value_at
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
 from mbsd.base.pickled import WithFunctions
-from mbsd.model.laws.law import Motion, Times
-
-if TYPE_CHECKING:
-    from mbsd.model.laws.numbers import Compiled
+from mbsd.model.laws.fitting.sampling import Sampled, look_times
+from mbsd.model.laws.formulas import polynomial
+from mbsd.model.laws.law import Motion, Times, within
+from mbsd.model.laws.numbers import Compiled, breaks_of, evaluated
 
 TOLD = 1e-6
 """The fraction of a load that may be missed before it is reported."""
@@ -50,8 +49,6 @@ class Function(WithFunctions, Motion):
 
     def as_load(self, first: float, last: float) -> Motion:
         """The fit of f alone over the span; f may jump."""
-        from mbsd.model.laws.formulas import polynomial
-
         return self._fit(first, last, load=True) if last > first else polynomial(self._values(np.array([first]))[0])
 
     def compiled(self, first: float, last: float) -> Compiled:
@@ -59,7 +56,6 @@ class Function(WithFunctions, Motion):
         if self.df is None or self.ddf is None:
             return self.over(first, last).compiled(first, last)
         from mbsd.model.laws.fitting.exact import exact_pieces
-        from mbsd.model.laws.fitting.sampling import look_times
 
         last = last if last > first else first + 1.0
         looks = look_times(first, last, self.shortest)
@@ -67,10 +63,8 @@ class Function(WithFunctions, Motion):
 
     def knots(self, first: float, last: float) -> np.ndarray:
         """Where a pulse cannot hide, and its breaks."""
-        from mbsd.model.laws.fitting.sampling import look_times
-
         times = np.unique(np.concatenate([look_times(first, last, self.shortest), self.breaks]))
-        return times[(times >= first) & (times <= last)]
+        return within(times, first, last)
 
     def __call__(self, times: Times) -> np.ndarray:
         """(T,) times to (T, 3): f, f', f''."""
@@ -84,7 +78,6 @@ class Function(WithFunctions, Motion):
     def _fit(self, first: float, last: float, load: bool) -> Fitted:
         from mbsd.model.laws.fitting.fit import fit, fit_pieces
         from mbsd.model.laws.fitting.leaves import given_cuts
-        from mbsd.model.laws.fitting.sampling import Sampled, look_times
 
         looks, sampled = look_times(first, last, self.shortest), Sampled(self._values)
         fitted = fit(sampled, first, last, given_cuts(self.breaks, first, last), looks, load)
@@ -143,11 +136,9 @@ class Fitted(Function):
 
     def knots(self, first: float, last: float) -> np.ndarray:
         """Where its pieces meet, and their middles."""
-        from mbsd.model.laws.numbers import breaks_of
-
         breaks = breaks_of(self.law)
         times = np.sort(np.concatenate([breaks, 0.5 * (breaks[1:] + breaks[:-1])]))
-        return times[(times >= first) & (times <= last)]
+        return within(times, first, last)
 
     def compiled(self, first: float, last: float) -> Compiled:
         """As kernels evaluate it."""
@@ -162,8 +153,6 @@ class Fitted(Function):
                 f"function: asked for t = {times.min():g} .. {times.max():g} s, it was fitted to {self.first:g} .. "
                 f"{self.last:g} s"
             )
-        from mbsd.model.laws.numbers import evaluated
-
         return evaluated(self.law, times)
 
 

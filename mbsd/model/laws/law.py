@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbsd.base.arguments import finite_number
+from mbsd.base.arguments import finite_number, number_array
 from mbsd.base.errors import ModelError
-
-if TYPE_CHECKING:
-    from mbsd.model.laws.numbers import Compiled
+from mbsd.model.laws.fitting.sampling import look_times
+from mbsd.model.laws.numbers import Compiled
 
 Times = np.ndarray
 
 
-def refuse_non_finite(law: str, **numbers: float) -> None:
+def check_finite(law: str, **numbers: float) -> None:
     """Raise ModelError naming the first that is no finite number."""
     for name, value in numbers.items():
         finite_number(f"{law}: {name}", value)
@@ -33,7 +31,7 @@ class Motion:
 
     @property
     def given_derivatives(self) -> bool:
-        """True if f' and f'' are its author's, so that they may be wrong; laws that derive them from f say no."""
+        """True if f' and f'' are given by the user, so that they may be wrong."""
         return True
 
     def knots(self, first: float, last: float) -> np.ndarray:
@@ -58,13 +56,12 @@ class Motion:
         Raises ModelError where f or f' jumps, and where f' and f'' are not the derivatives of f.
         """
         from mbsd.model.laws.fitting.exact import exact_pieces
-        from mbsd.model.laws.fitting.sampling import look_times
 
         last = last if last > first else first + 1.0
         looks = look_times(first, last)
         return exact_pieces(self, first, last, (), looks, self(looks))
 
-    def refuse_wrong_derivatives(self, time: float) -> None:
+    def check_derivatives_at(self, time: float) -> None:
         """Raise ModelError where f' and f'' are not those of f within a second from ``time`` (s) on.
 
         Whatever else keeps the law from being made ready there is no matter of its value at ``time``.
@@ -81,3 +78,31 @@ class Motion:
     def __call__(self, times: Times) -> np.ndarray:
         """(T,) times to (T, 3): f, f', f''."""
         raise NotImplementedError
+
+
+class Formula(Motion):
+    """Base of laws whose f' and f'' follow from their own numbers."""
+
+    @property
+    def given_derivatives(self) -> bool:
+        """Return False: nothing was given that could be wrong."""
+        return False
+
+
+def within(times: np.ndarray, first: float, last: float) -> np.ndarray:
+    """Return those of ``times`` (n,) in ``first`` .. ``last`` (s)."""
+    return times[(times >= first) & (times <= last)]
+
+
+def rising_rows(law: str, fewest: int, finite: bool = True, **columns: object) -> tuple[np.ndarray, np.ndarray]:
+    """Return two ``columns`` (n,), of which the first rises, n >= ``fewest``. Raises ModelError."""
+    (x_name, x), (y_name, y) = ((name, number_array(f"{law}: {name}", c, finite)) for name, c in columns.items())
+    if x.ndim != 1 or x.shape != y.shape or len(x) < fewest:
+        raise ModelError(
+            f"{law}: {x_name} {x.shape} and {y_name} {y.shape} must be two lists of {fewest} numbers or more"
+        )
+    if not finite and not (np.isfinite(x).all() and np.isfinite(y).all()):
+        raise ModelError(f"{law}: {x_name} and {y_name} must be finite numbers; leave out rows without a value")
+    if not (np.diff(x) > 0).all():
+        raise ModelError(f"{law}: {x_name} must rise; {x_name}[{int(np.argmin(np.diff(x) > 0)) + 1}] does not")
+    return x, y

@@ -27,43 +27,42 @@ def breaks_of(law: Compiled) -> np.ndarray:
     return np.append(numbers[3::7], numbers[2]) if kind == PIECES else np.zeros(0)
 
 
-def hermite_pieces(x: np.ndarray, samples: np.ndarray, periodic: bool = False) -> Compiled:
-    """The quintic through value, first and second derivative, samples (p + 1, 3), at rising x (p + 1,)."""
-    return pieces(x, hermite_coefficients(np.diff(x), samples[:-1], samples[1:]), periodic)
-
-
 def hermite_coefficients(h: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Return (p, 6) quintics over widths h (p,) from value and two derivatives (p, 3) at both ends.
+    """Return (p, ..., 6) quintics over widths h (p,), from values and derivatives at both ends.
 
-    Coefficients go from the lowest power up.
+    ``left`` and ``right`` (p, ..., 3) are value, first and second derivative. Coefficients go from the lowest power up.
     """
-    f, df, ddf = left.T
-    rise = right[:, 0] - f - h * df - h**2 * ddf / 2
-    return quintic_coefficients(h, left, rise, (right[:, 1] - df - h * ddf) * h, (right[:, 2] - ddf) * h**2)
+    h = h.reshape(-1, *[1] * (left.ndim - 2))
+    f, df, ddf = np.moveaxis(left, -1, 0)
+    rise = right[..., 0] - f - h * df - h**2 * ddf / 2
+    return quintic_coefficients(h, left, rise, (right[..., 1] - df - h * ddf) * h, (right[..., 2] - ddf) * h**2)
 
 
 def quintic_coefficients(
     h: np.ndarray, left: np.ndarray, rise: np.ndarray, slope: np.ndarray, bend: np.ndarray
 ) -> np.ndarray:
-    """Return (p, 6) coefficients from the right ends' differences from the parabola at the left.
+    """Return (p, ..., 6) coefficients from the right ends' differences from the parabola at the left.
 
-    The differences are those of f, h f' and h^2 f'', each (p,).
+    The differences are those of f, h f' and h^2 f'', each (p, ...).
     """
     c3, c4, c5 = 10 * rise - 4 * slope + bend / 2, -15 * rise + 7 * slope - bend, 6 * rise - 3 * slope + bend / 2
-    f, df, ddf = left.T
-    return np.column_stack([f, df, ddf / 2, c3 / h**3, c4 / h**4, c5 / h**5])
+    f, df, ddf = np.moveaxis(left, -1, 0)
+    return np.stack([f, df, ddf / 2, c3 / h**3, c4 / h**4, c5 / h**5], axis=-1)
+
+
+def polynomial_pieces(poly: Any, periodic: bool = False) -> Compiled:
+    """Return a scipy PPoly of degree 5 or less, without its pieces of no width."""
+    wide = np.flatnonzero(np.diff(poly.x) > 0)
+    coefficients = np.zeros((len(wide), 6))
+    coefficients[:, : len(poly.c)] = poly.c[::-1, wide].T
+    return pieces(np.append(poly.x[wide], poly.x[wide[-1] + 1]), coefficients, periodic)
 
 
 def spline_pieces(spline: Any, periodic: bool = False) -> Compiled:
-    """A scipy BSpline of degree 5 or less, piece by piece."""
+    """Return a scipy BSpline of degree 5 or less, piece by piece."""
     from scipy.interpolate import PPoly
 
-    poly = PPoly.from_spline(spline)
-    long_enough = np.flatnonzero(np.diff(poly.x) > 0)
-    coefficients = np.zeros((len(long_enough), 6))
-    coefficients[:, : len(poly.c)] = poly.c[::-1, long_enough].T
-    breaks = np.append(poly.x[long_enough], poly.x[long_enough[-1] + 1])
-    return pieces(breaks, coefficients, periodic)
+    return polynomial_pieces(PPoly.from_spline(spline), periodic)
 
 
 def evaluated(law: Compiled, x: np.ndarray) -> np.ndarray:

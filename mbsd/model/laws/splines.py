@@ -19,20 +19,18 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from mbsd.base.arguments import finite_number, number_array, switch
+from mbsd.base.arguments import finite_number, switch
 from mbsd.base.errors import ModelError
-from mbsd.model.laws.law import Motion, Times
-
-if TYPE_CHECKING:
-    from mbsd.model.laws.numbers import Compiled
+from mbsd.model.laws.law import Formula, Motion, Times, rising_rows, within
+from mbsd.model.laws.numbers import Compiled, spline_pieces
 
 
 @dataclass(frozen=True, eq=False)
-class Table(Motion):
+class Table(Formula):
     """See :func:`table`."""
 
     times: np.ndarray
@@ -45,11 +43,6 @@ class Table(Motion):
         """The table's span, if it was declared periodic."""
         return float(self.times[-1] - self.times[0]) if self.periodic else None
 
-    @property
-    def given_derivatives(self) -> bool:
-        """No: they follow from the numbers."""
-        return False
-
     def knots(self, first: float, last: float) -> np.ndarray:
         """Its own times."""
         times = self.times
@@ -57,12 +50,10 @@ class Table(Motion):
             span = times[-1] - times[0]
             turns = np.arange(math.floor((first - times[0]) / span), math.floor((last - times[0]) / span) + 1)
             times = np.unique((times[:-1] + span * turns[:, None]).ravel())
-        return times[(times >= first) & (times <= last)]
+        return within(times, first, last)
 
     def compiled(self, first: float, last: float) -> Compiled:
         """The spline's own pieces. Raises ModelError if the table does not cover ``first`` .. ``last`` (s)."""
-        from mbsd.model.laws.numbers import spline_pieces
-
         self(np.array([first, last]))
         return spline_pieces(self._spline[0], self.periodic)
 
@@ -90,12 +81,8 @@ def table(times: object, values: object, periodic: bool = False) -> Motion:
 
     ``periodic``: the last value equals the first and the motion repeats with continuous derivatives.
     """
-    t, f = number_array("table: times", times), number_array("table: values", values)
     periodic = switch("table: periodic", periodic)
-    if t.ndim != 1 or t.shape != f.shape or len(t) < 6:
-        raise ModelError(f"table: times {t.shape} and values {f.shape} must be two lists of six numbers or more")
-    if not (np.diff(t) > 0).all():
-        raise ModelError(f"table: times must rise; times[{int(np.argmin(np.diff(t) > 0)) + 1}] does not")
+    t, f = rising_rows("table", 6, times=times, values=values)
     if periodic and abs(f[-1] - f[0]) > 1e-12 * max(1.0, float(np.abs(f).max())):
         raise ModelError(f"table: periodic, but the last value {f[-1]:g} is not the first {f[0]:g}")
     if periodic:
@@ -107,7 +94,7 @@ LEAST_ROWS = 8
 
 
 @dataclass(frozen=True, eq=False)
-class Recorded(Motion):
+class Recorded(Formula):
     """See :func:`recorded`."""
 
     times: np.ndarray
@@ -122,20 +109,12 @@ class Recorded(Motion):
         noise = estimated_noise(self.times, self.values) if self.noise is None else self.noise
         return make_splrep(self.times, self.values, k=5, s=len(self.times) * noise**2)  # pyright: ignore[reportArgumentType]
 
-    @property
-    def given_derivatives(self) -> bool:
-        """No: they follow from the numbers."""
-        return False
-
     def knots(self, first: float, last: float) -> np.ndarray:
         """Where the pieces of its spline meet."""
-        times = np.unique(self.spline.t)
-        return times[(times >= first) & (times <= last)]
+        return within(np.unique(self.spline.t), first, last)
 
     def compiled(self, first: float, last: float) -> Compiled:
         """The spline's own pieces. Raises ModelError if the record does not cover ``first`` .. ``last`` (s)."""
-        from mbsd.model.laws.numbers import spline_pieces
-
         self(np.array([first, last]))
         return spline_pieces(self.spline)
 
@@ -167,17 +146,7 @@ def recorded(times: object, values: object, noise: float | None = None) -> Motio
 
     ``noise``: standard deviation of a value (rad or m), 0 for values without any; None estimates it.
     """
-    t, f = (
-        number_array(f"recorded: {what}", rows, finite=False) for what, rows in (("times", times), ("values", values))
-    )
-    if t.ndim != 1 or t.shape != f.shape or len(t) < LEAST_ROWS:
-        raise ModelError(
-            f"recorded: times {t.shape} and values {f.shape} must be two lists of {LEAST_ROWS} numbers or more"
-        )
-    if not (np.isfinite(t).all() and np.isfinite(f).all()):
-        raise ModelError("recorded: times and values must be finite numbers; leave out rows without a value")
-    if not (np.diff(t) > 0).all():
-        raise ModelError(f"recorded: times must rise; times[{int(np.argmin(np.diff(t) > 0)) + 1}] does not")
+    t, f = rising_rows("recorded", LEAST_ROWS, finite=False, times=times, values=values)
     if noise is not None and finite_number("recorded: noise", noise) < 0:
         raise ModelError(f"recorded: noise is {noise}; it must be zero or positive, or None to estimate it")
     return Recorded(t, f, None if noise is None else float(noise))

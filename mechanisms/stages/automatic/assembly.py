@@ -13,7 +13,7 @@ import cadquery as cq
 import numpy as np
 
 from mechanisms.stages.automatic.body_shapes import PlacedEye, body_shape, rod_shape, yoke_shape
-from mechanisms.stages.automatic.layout.plan import BOLT_HOLE
+from mechanisms.stages.automatic.layout.plan import BOLT_HOLE, Mark
 from mechanisms.stages.automatic.standing import BackPlate, Upright
 from mechanisms.stages.automatic.wheels.wheels import shape_of
 from shared.shapes.base import base_plate, foot
@@ -128,8 +128,6 @@ class Wish:
 
 def place(wishes: Iterable[Wish], plan: Plan) -> None:
     """Enter the words; letters are half as high as an eye's radius where nobody says."""
-    from mechanisms.stages.automatic.layout.plan import Mark
-
     sizes = plan.layout.sizes
     for wish in wishes:
         x, y = (length / sizes.scale for length in wish.at)
@@ -139,8 +137,6 @@ def place(wishes: Iterable[Wish], plan: Plan) -> None:
 
 def refuse_letters(name: str, word: str) -> None:
     """Raise UserError where a word cannot be engraved."""
-    from shared.shapes.engraving import LETTERS
-
     unknown = [letter for letter in word if letter not in LETTERS]
     if unknown or not word:
         what = f"cannot engrave {unknown[0]!r}" if unknown else "there is no letter to engrave"
@@ -152,10 +148,6 @@ def marked(shape: cq.Workplane, plan: Plan, body: str, thickness: float) -> cq.W
 
     Raises UserError naming word, body and place where a word is not wholly on the plate.
     """
-    import cadquery as cq
-
-    from shared.shapes.engraving import engraved, text
-
     for mark in plan.marks.get(body, []):
         strokes = text(mark.word, mark.height, mark.x, mark.y, width=WIDTH * mark.height)
         slab = cq.Workplane(origin=(mark.x, mark.y, 0)).rect(1e3, 1e3).extrude(thickness)
@@ -327,7 +319,10 @@ def built(plan: Plan, heights: Heights, engraved_too: bool = True) -> dict[str, 
             shape = marked(shape, plan, body, heights.thickness)
         plate = Solid(plan.main[body], placed(shape, z=heights.bottom(body)), plan.materials[body], holes)
         made.setdefault(plan.layout.webs.get(body, body), []).extend([plate, *plan.solids.get(body, [])])
-    return {body: [_scaled(solid, plan.layout.sizes) for solid in solids] for body, solids in made.items()}
+    scale, tolerance = plan.layout.sizes.scale, plan.layout.sizes.tolerance
+    return {
+        body: [replace(scaled(solid, scale), tolerance=tolerance) for solid in solids] for body, solids in made.items()
+    }
 
 
 def fitted(bodies: dict[str, list[Solid]]) -> dict[str, list[Solid]]:
@@ -392,8 +387,8 @@ def _blanks(plan: Plan, body: str, eyes: list[PlacedEye]) -> list[PlacedEye]:
     ]
 
 
-def _scaled(solid: Solid, sizes: Sizes) -> Solid:
-    scale = sizes.scale
+def scaled(solid: Solid, scale: float) -> Solid:
+    """Return a solid with all lengths times ``scale``."""
     if scale == 1.0:
         return solid
     shape = cq.Workplane(obj=solid.shape.val().scale(scale))
@@ -401,4 +396,4 @@ def _scaled(solid: Solid, sizes: Sizes) -> Solid:
     roll = solid.rolls
     if roll is not None:
         roll = replace(roll, x=roll.x * scale, y=roll.y * scale, radius=roll.radius * scale)
-    return replace(solid, shape=shape, holds=holds, rolls=roll, tolerance=sizes.tolerance)
+    return replace(solid, shape=shape, holds=holds, rolls=roll)

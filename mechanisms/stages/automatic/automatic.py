@@ -7,13 +7,24 @@ from collections.abc import Collection, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from mechanisms.stages.automatic.assembly import ROD, Wish, kernel_refusals, materials, place, refuse_letters
+from mechanisms.stages.automatic.assembly import (
+    ROD,
+    Wish,
+    back_plate,
+    built,
+    fitted,
+    kernel_refusals,
+    materials,
+    place,
+    refuse_letters,
+)
+from mechanisms.stages.automatic.body_shapes import Joined
 from mechanisms.stages.automatic.decision import decided
 from mechanisms.stages.automatic.features import laid_out
 from mechanisms.stages.automatic.layout.items import Heights, Need, heights
 from mechanisms.stages.automatic.layout.layout import Layout, Springs
 from mechanisms.stages.automatic.layout.motion import poses_of, times_of
-from mechanisms.stages.automatic.layout.plan import build
+from mechanisms.stages.automatic.layout.plan import Plan, build
 from mechanisms.stages.automatic.layout.sizes import (
     THINNEST,
     Sizes,
@@ -29,10 +40,12 @@ from mechanisms.stages.automatic.pins.pins import places
 from mechanisms.stages.automatic.rolling.roads import runs_on_ground
 from mechanisms.stages.automatic.shafts.along import THINNEST_ALONG, Along
 from mechanisms.stages.automatic.shafts.bodies import has_places
+from mechanisms.stages.automatic.shafts.solids import plate_of, solids
 from mechanisms.stages.automatic.standing import hold
 from mechanisms.stages.loading.wishes import wished, wished_scale
 from shared.contract.materials import MATERIALS
 from shared.contract.parts import Mount, mounted
+from shared.shapes.bodies import Bodies, pair_of
 from shared.stage.console import Shown
 from shared.stage.errors import UserError, did_you_mean
 
@@ -40,9 +53,6 @@ if TYPE_CHECKING:
     import cadquery as cq
 
     from mbsd import Mechanism, Solution
-    from mechanisms.stages.automatic.body_shapes import Joined
-    from mechanisms.stages.automatic.layout.plan import Plan
-    from shared.shapes.bodies import Bodies
     from shared.shapes.outline import Point
     from shared.shapes.solid import Solid
     from shared.shapes.standards import Fit
@@ -133,8 +143,6 @@ class Automatic:
         ``at`` is the place of the joint whose eye it carries; joints that no outline carries are linked as usual.
         ``sharp`` leaves its edges as they are.
         """
-        from mechanisms.stages.automatic.body_shapes import Joined
-
         self._known(body)
         self._refuse_along("join", "join the outline to the solids (made.replace)")
         self._joined.append(Joined(body, outline, at, tuple(holes), sharp))
@@ -184,8 +192,6 @@ class Automatic:
 
         Neither the order of layers nor the clearance stage keeps them apart.
         """
-        from shared.shapes.bodies import pair_of
-
         for body in (first, second):
             self._known(body, ground=True)
         self._touching.add(pair_of(first, second))
@@ -231,7 +237,7 @@ class Automatic:
         """Return what is to be built, with styluses as tall as the layers allow. Raises UserError if no layers are
         possible.
         """
-        return self._found[0]
+        return self._decided[0]
 
     @cached_property
     def levels(self) -> dict[str, int]:
@@ -241,7 +247,7 @@ class Automatic:
     @property
     def decided(self) -> dict[str, int]:
         """The layers, and the choices of items that have one (0 or 1)."""
-        return self._found[1]
+        return self._decided[1]
 
     @cached_property
     def heights(self) -> Heights:
@@ -261,9 +267,6 @@ class Automatic:
         ``on_stand()`` adds a stand. ``engraved_too``: the base with its names, rule and dial, which cost as much as a
         link.
         """
-        from mechanisms.stages.automatic.assembly import back_plate, built, fitted
-        from shared.shapes.bodies import Bodies
-
         if self.along is not None:
             return self._solids_along(self.along)
         plan = self.plan()
@@ -288,10 +291,6 @@ class Automatic:
         return made
 
     def _solids_along(self, along: Along) -> Bodies:
-        from mechanisms.stages.automatic.assembly import fitted
-        from mechanisms.stages.automatic.shafts.solids import plate_of, solids
-        from shared.shapes.bodies import Bodies
-
         made = Bodies(fitted(solids(along, self._materials, self.mount, self._base_under)) | self._replaced)
         made.along, made.notes = True, self._notes()
         plate = plate_of(along, self.mount, self._base_under)
@@ -316,8 +315,6 @@ class Automatic:
 
     def plan(self) -> Plan:
         """Return eyes, feet and hardware, before plates and base are built."""
-        from mechanisms.stages.automatic.layout.plan import Plan
-
         rods = dict.fromkeys(self.layout.rods, ROD)
         named = materials(self.m) | rods | self._materials
         plan = Plan(self.layout, named | {web: named[body] for web, body in self.layout.webs.items()})
@@ -333,7 +330,7 @@ class Automatic:
         return plan
 
     @cached_property
-    def _found(self) -> tuple[Layout, dict[str, int]]:
+    def _decided(self) -> tuple[Layout, dict[str, int]]:
         return decided(self._layout, self.wishes(), self._layers)
 
     def wishes(self) -> list[Sizes]:
@@ -364,7 +361,7 @@ class Automatic:
 
     def _plan_anew(self) -> None:
         """Forget what was found before a wish."""
-        for name in ("sizes", "layout", "levels", "heights", "_found", "along"):
+        for name in ("sizes", "layout", "levels", "heights", "_decided", "along"):
             self.__dict__.pop(name, None)
 
     def _known(self, body: str, ground: bool = False) -> None:

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 import cadquery as cq
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.items import Item, Reach
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.planar import Rounded, convex_hull
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded
@@ -21,7 +22,7 @@ from shared.shapes.outline import hull_holds, inset_corners
 from shared.shapes.solid import placed
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
+    from mechanisms.stages.automatic.layout.items import Heights
     from mechanisms.stages.automatic.layout.layout import Layout
     from mechanisms.stages.automatic.layout.plan import Plan
     from shared.shapes.outline import Point
@@ -255,7 +256,7 @@ SAMPLES = 90
 
 
 @dataclass(frozen=True, eq=False)
-class Joined:
+class Joined(Feature):
     """One outline (mm, the body's frame)."""
 
     body: str
@@ -265,20 +266,12 @@ class Joined:
     holes: tuple[cq.Wire, ...]
     sharp: bool
 
-    def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """Return an empty list: the plate need not reach round it."""
-        return []
-
     def items(self, layout: Layout) -> Iterable[Item]:
         """Return its convex hull at the height of the plate."""
         places = [self.outline.positionAt(k / SAMPLES) for k in range(SAMPLES)]
         points = np.array([(place.x, place.y) for place in places])
         shape = Rounded(convex_hull(points / layout.sizes.scale), 0.0)
         return [Item(f"the outline of {self.body}", self.body, shape, Reach((self.body,)), source=self)]
-
-    def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Return an empty list."""
-        return []
 
     def build(self, plan: Plan, heights: Heights) -> None:
         """Build a part of the plate."""

@@ -28,6 +28,7 @@ from shared.stage.paths import shown_file
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
     from mbsd.cams import CamProfile
+    from mbsd.model.body import Marker
     from mbsd.model.force import Force
     from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.items import Heights, Levels
@@ -61,7 +62,7 @@ BASE, ROLLER, POINT = 15.0, 6.5, 4.2
 
 
 @dataclass(frozen=True, eq=False)
-class Cam:
+class Cam(Feature):
     """A disc and its follower: places and directions in their frames (rmm, rad)."""
 
     name: str
@@ -144,11 +145,8 @@ def faces(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
 def _cam(m: Mechanism, joint: Joint, layout: Layout) -> Cam:
     refuse_ground(m, joint, joint.i.body.name, joint.j.body.name)
     profile, sizes = _profile(joint), layout.sizes
-    if profile.undercut:
-        raise UserError(f"{m.name}: cam of joint '{joint.name}' cannot be cut: {profile.problems[0]}")
-    c, s = math.cos(joint.i.angle), math.sin(joint.i.angle)
     centre, clear = layout.place(joint.i), CLEAR * sizes.pivot.fit.running
-    outline = sizes.of_metres(1.0) * profile.outline @ np.array([[c, s], [-s, c]]) + centre
+    outline = cut_outline(m, joint, joint.i, sizes.of_metres(1.0)) + centre
     at = (*layout.place(joint.j), joint.j.angle)
     names = joint.i.body.name, joint.j.body.name
     roller, face = None, (0.0, 0.0)
@@ -158,6 +156,17 @@ def _cam(m: Mechanism, joint: Joint, layout: Layout) -> Cam:
         roller = sizes.of_metres(profile.sizes["roller_radius"]) - clear
     base = sizes.of_metres(profile.sizes["base_radius"])
     return Cam(joint.name, *names, outline, centre, base, at, roller, face, clear)
+
+
+def cut_outline(m: Mechanism, joint: Joint, marker: Marker, metre: float) -> np.ndarray:
+    """Return (n, 2) the outline of a joint's cam about its centre, in the axes of the body of ``marker``, with a
+    ``metre`` as the unit. Raises UserError for a cam that cannot be cut.
+    """
+    profile = _profile(joint)
+    if profile.undercut:
+        raise UserError(f"{m.name}: cam of joint '{joint.name}' cannot be cut: {profile.problems[0]}")
+    c, s = math.cos(marker.angle), math.sin(marker.angle)
+    return metre * profile.outline @ np.array([[c, s], [-s, c]])
 
 
 def pushing_cam(touch: Joint, layout: Layout) -> list[Feature]:
@@ -273,7 +282,7 @@ LOOSE = 1.5
 
 
 @dataclass(frozen=True, eq=False)
-class GenevaDrive:
+class GenevaDrive(Feature):
     """Centres and directions of pin and slot in the frames of crank and wheel (rmm, rad)."""
 
     name: str
@@ -308,8 +317,8 @@ class GenevaDrive:
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
         """Return eyes for the axes, and one that holds the pin."""
         eye = layout.sizes.eye
-        anchors = [Anchor(body, at[0], at[1], eye) for body, at in self._ends()]
-        return [*anchors, Anchor(self.crank, *self.pin.pin_at, eye)]
+        axes = Anchor(self.crank, *self.crank_at[:2], eye), Anchor(self.wheel, *self.wheel_at[:2], eye)
+        return [*axes, Anchor(self.crank, *self.pin.pin_at, eye)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
         """Yield the wheel, the pin through it, the locking disc; and a rule: the crank, whose disc stands in the
@@ -329,9 +338,6 @@ class GenevaDrive:
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """Return the same as for a pin in a slot."""
         return self.pin.needs_under(self, levels, layout)
-
-    def _ends(self) -> list[tuple[str, tuple[float, float, float]]]:
-        return [(self.crank, self.crank_at), (self.wheel, self.wheel_at)]
 
 
 @kind("geneva")

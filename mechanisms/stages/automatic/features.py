@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import mechanisms.stages.automatic.kinds  # noqa: F401  (enters them)
-from mechanisms.stages.automatic.layout.items import Anchor, Need
+from mechanisms.stages.automatic.layout.items import Anchor
 from mechanisms.stages.automatic.layout.layout import Feature, Layout
 from mechanisms.stages.automatic.layout.plan import CONTACT_KINDS, DRIVER_KINDS, FORCE_KINDS, KINDS
 from mechanisms.stages.automatic.layout.sizes import ROD
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from mbsd.model.force import Force
     from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.body_shapes import Joined
-    from mechanisms.stages.automatic.layout.items import Heights, Item, Levels
+    from mechanisms.stages.automatic.layout.items import Heights
     from mechanisms.stages.automatic.layout.plan import Gather, Plan
 
 
@@ -39,7 +39,7 @@ SHAPELESS = ("angle_lock", "constraint")
 
 
 @dataclass(frozen=True, eq=False)
-class LooseEye:
+class LooseEye(Feature):
     """Where a joint would hold a body that is left out: an eye of the other body, bored for a pin (rmm)."""
 
     body: str
@@ -50,14 +50,6 @@ class LooseEye:
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
         """Return the eye."""
         return [Anchor(self.body, self.x, self.y, layout.sizes.eye)]
-
-    def items(self, layout: Layout) -> Iterable[Item]:
-        """Return an empty list: the plate alone takes room."""
-        return []
-
-    def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Return an empty list."""
-        return []
 
     def build(self, plan: Plan, heights: Heights) -> None:
         """Build a bore; without one the plate goes round the place anyway."""

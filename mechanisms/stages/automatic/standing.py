@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import cadquery as cq
 import numpy as np
 
+from mechanisms.stages.automatic.layout.plan import free_name
 from mechanisms.stages.automatic.layout.planar import convex_hull
 from shared.contract.materials import MATERIALS
 from shared.shapes.build import extruded
@@ -188,21 +189,10 @@ def _seen(place: np.ndarray, poses: np.ndarray, upright: Upright | None) -> np.n
     return np.column_stack([x, y]) if upright is None else upright.seen(np.column_stack([x, y]))
 
 
-# Names that no other solid has; some disks take upper and lower case for one.
-
-
 def named(made: Sequence[Solid], bodies: Mapping[str, Sequence[Solid]]) -> list[Solid]:
     """Return solids with names that are numbered where ``bodies`` have them already."""
     taken = {solid.name.lower() for solids in bodies.values() for solid in solids}
-    renamed: list[Solid] = []
-    for solid in made:
-        name, number = solid.name, 1
-        while name.lower() in taken:
-            number += 1
-            name = f"{solid.name}_{number}"
-        taken.add(name.lower())
-        renamed.append(replace(solid, name=name))
-    return renamed
+    return [replace(solid, name=free_name(solid.name, taken)) for solid in made]
 
 
 # How large a stand is: below all that moves, no larger than it needs, and so wide that it does not tip (mm).

@@ -238,7 +238,10 @@ class Band:
 
 
 def bands(parts: Parts, motion: Motion, where: Mapping[str, BodyPath]) -> Iterator[Band]:
-    """Yield bands of all belts that pieces hold, as far as their pulleys leave room for a path."""
+    """Yield bands of all belts that pieces hold, as far as their pulleys leave room for a path.
+
+    The path of a belt that an event releases ends there: with the interval of data.json in which that happens.
+    """
     for name, joint in motion.joints.items():
         own, held = _holding(parts, name)
         if joint.look != "band" or held is None or joint.shape is None:
@@ -247,6 +250,11 @@ def bands(parts: Parts, motion: Motion, where: Mapping[str, BodyPath]) -> Iterat
         if not shape.radius_first or not shape.radius_second:
             continue
         path, distance = _path(joint, where)
+        rows = joint.rows_held(motion.time)
+        if joint.released is not None and rows:
+            rows += motion.time[rows - 1] < joint.released
+        if rows < 2 or motion.time[rows - 1] == motion.time[0]:
+            continue
         way = BeltPath(mm(shape.radius_first), mm(shape.radius_second), distance, shape.crossed)
         if not way.has_room:
             continue
@@ -260,7 +268,7 @@ def bands(parts: Parts, motion: Motion, where: Mapping[str, BodyPath]) -> Iterat
             body: (end, np.array([mm(marker[0]), mm(marker[1])]))
             for body, marker, end in zip(shape.bodies, shape.markers, ends, strict=True)
         }
-        yield Band(MeshPiece(f"belt {name}", name, triangles), path, axes, own)
+        yield Band(MeshPiece(f"belt {name}", name, triangles), path.until(rows), axes, own)
 
 
 def band(way: BeltPath, wide: float, high: float) -> np.ndarray:

@@ -93,6 +93,12 @@ class BodyPath:
     rate: np.ndarray
     acceleration: np.ndarray
 
+    def until(self, rows: int) -> BodyPath:
+        """Return its first samples, which are ``rows`` at most."""
+        if rows >= len(self.time):
+            return self
+        return BodyPath(self.time[:rows], self.pose[:rows], self.rate[:rows], self.acceleration[:rows])
+
     @cached_property
     def first(self) -> np.ndarray:
         """(m,): the sample at which each interval begins."""
@@ -279,7 +285,7 @@ def _with_common_pins(axes: Axes) -> Axes:
 
 
 def far_bodies(pieces: Sequence[MeshPiece], where: Mapping[str, BodyPath], reach: float) -> set[frozenset[str]]:
-    """Return pairs of bodies whose pieces are ``reach`` (mm) apart or more over the whole motion."""
+    """Return pairs of bodies whose pieces are ``reach`` (mm) apart or more as long as there are both."""
     radius: dict[str, float] = {}
     for piece in pieces:
         radius[piece.body] = max(radius.get(piece.body, 0.0), piece.reach)
@@ -288,14 +294,22 @@ def far_bodies(pieces: Sequence[MeshPiece], where: Mapping[str, BodyPath], reach
     room = {body: r + where[body].interpolation_error(r) for body, r in radius.items()}
     pairs = set()
     for a, b in combinations(radius, 2):
-        (low_a, high_a), (low_b, high_b) = boxes[a], boxes[b]
+        both = slice(min(len(room[a]), len(room[b])))
+        (low_a, high_a), (low_b, high_b) = ([side[both] for side in boxes[body]] for body in (a, b))
         gap = np.maximum(np.maximum(low_b - high_a, low_a - high_b), 0.0)
-        if (np.hypot(gap[:, 0], gap[:, 1]) - room[a] - room[b] >= reach).all():
+        if (np.hypot(gap[:, 0], gap[:, 1]) - room[a][both] - room[b][both] >= reach).all():
             pairs.add(frozenset((a, b)))
     return pairs
 
 
+def common(first: BodyPath, second: BodyPath) -> tuple[BodyPath, BodyPath]:
+    """Return two paths as far as both go: that of a belt ends where an event releases it."""
+    rows = min(len(first.time), len(second.time))
+    return first.until(rows), second.until(rows)
+
+
 def error_of(first: MeshPiece, second: MeshPiece, where: Mapping[str, BodyPath]) -> float:
     """Return how far two pieces may at most be from where they are taken to be (mm)."""
-    ends = [where[piece.body].interpolation_error(piece.reach) for piece in (first, second)]
+    pieces = zip((first, second), common(where[first.body], where[second.body]), strict=True)
+    ends = [path.interpolation_error(piece.reach) for piece, path in pieces]
     return float((ends[0] + ends[1]).max(initial=0.0))

@@ -18,8 +18,9 @@ What is proven: at every moment of the motion, which between the samples of data
 shows, the meshes are apart by the ``proven`` gap of clearance.json. It is at most ``resolution`` below the gap that was
 measured, and less what the true motion may be off between two samples there (path.py). Meshes lie within
 ``parts_files.TOLERANCE`` of the solids, or the ``tolerance`` of a Solid. A belt or chain is the band that it runs in
-(belts.py), compared with all but its own pulleys. Pieces of one body are not compared with each other, nor are pieces
-of two bodies, or two pieces, that parts.json says may touch by design; clearance.json names these pairs.
+(meshing.py), compared with all but its own pulleys until an event releases it. Pieces of one body are not compared with
+each other, nor are pieces of two bodies, or two pieces, that parts.json says may touch by design; clearance.json names
+these pairs.
 """
 
 from __future__ import annotations
@@ -153,7 +154,7 @@ def check(
         if height >= reach or is_far:
             error, apart = max(error, bodies.error_of(first, second, where) if height < reach else 0.0), apart + 1
             continue
-        sweep = Sweep(first, second, where[first.body], where[second.body])
+        sweep = Sweep(first, second, *bodies.common(where[first.body], where[second.body]))
         error = max(error, float(sweep.error.max(initial=0.0)))
         if sweep.is_apart(reach):
             apart += 1

@@ -241,34 +241,15 @@ def _sliding(solution: Any, node: Node) -> float:
     """Return how fast the body moves along the guide, seen from its parent."""
     joint = node.joint
     assert joint is not None
-    own, other = (joint.j, joint.i) if node.own_is_j else (joint.i, joint.j)
-    (vx, vy), (wx, wy) = _velocity(solution, own), _velocity(solution, other)
-    guide = joint.i.body.name
-    angle = joint.i.angle + (0.0 if guide == GROUND else float(solution.body(guide).theta[0]))
-    omega = 0.0 if guide == GROUND else float(solution.body(guide).omega[0])
-    (px, py), (qx, qy) = _place(solution, joint.i), _place(solution, joint.j)
-    dx, dy = qx - px, qy - py
-    rate = (vx - wx) * math.cos(angle) + (vy - wy) * math.sin(angle)
+    first, second = solution.place(joint.i), solution.place(joint.j)
+    own, other = (second, first) if node.own_is_j else (first, second)
+    angle, omega = float(first.theta[0]), float(first.omega[0])
+    dx, dy = float(second.x[0] - first.x[0]), float(second.y[0] - first.y[0])
+    vx, vy = float(own.vx[0] - other.vx[0]), float(own.vy[0] - other.vy[0])
+    rate = vx * math.cos(angle) + vy * math.sin(angle)
     if node.own_is_j:  # without what the guide's own turning gives at that place
         return rate + omega * (dy * math.cos(angle) - dx * math.sin(angle))
     return rate + omega * (dx * math.sin(angle) - dy * math.cos(angle))
-
-
-def _place(solution: Any, marker: Any) -> tuple[float, float]:
-    if marker.body.name == GROUND:
-        return marker.x, marker.y
-    view = solution.body(marker.body.name)
-    c, s = math.cos(view.theta[0]), math.sin(view.theta[0])
-    return float(view.x[0] + c * marker.x - s * marker.y), float(view.y[0] + s * marker.x + c * marker.y)
-
-
-def _velocity(solution: Any, marker: Any) -> tuple[float, float]:
-    if marker.body.name == GROUND:
-        return 0.0, 0.0
-    view = solution.body(marker.body.name)
-    x, y = _place(solution, marker)
-    omega = float(view.omega[0])
-    return float(view.vx[0]) - omega * (y - float(view.y[0])), float(view.vy[0]) + omega * (x - float(view.x[0]))
 
 
 def _axis(angle: float) -> str:

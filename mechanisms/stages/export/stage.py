@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,13 +11,13 @@ from mechanisms.stages.export import assembly, drawings, mjcf, urdf
 from mechanisms.stages.export.assembly import Wanted
 from mechanisms.stages.export.modelica.text import modelica
 from mechanisms.stages.loading import loading
-from mechanisms.stages.loading.inputs import Inputs, observed, recording
+from mechanisms.stages.loading.inputs import Inputs, observed
 from mechanisms.stages.solve import stage as solving
 from shared import contract
 from shared.stage.console import say, warn
 from shared.stage.errors import UserError, did_you_mean
 from shared.stage.files import sources_hash, write_bytes
-from shared.stage.paths import ROOT, Out, known_name, mechanism_file
+from shared.stage.paths import ROOT, Out, known_name
 from shared.stage.stages import Stage, key_of
 
 SOURCES = [ROOT / "mechanisms" / "stages" / name for name in ("export", "dxf_file.py")]
@@ -33,19 +32,17 @@ def run(name: str, form: str, time: float = 0.0) -> None:
         raise UserError(
             f"there is no format {form!r} to export; choose one of: {', '.join(FORMATS)}{did_you_mean(form, FORMATS)}"
         )
-    from mechanisms.stages.loading.inputs import loaded_inputs
+    out = Out(name)
+    parts = solving.parts_of(out)
 
-    out, before = Out(name), set(sys.modules)
-    parts = _parts(out)
-    with recording() as recorder:
+    def written() -> Written:
         solution, _ = solving.solve(name, parts)
         if form in POSED:
             _warn_of_time(name, time, float(solution.t[0]), float(solution.t[-1]))
         with loading.author_code(name):
-            content, left_out = FORMATS[form][1](Wanted(solution, time, out, parts))
-    loaded = loaded_inputs(mechanism_file(name), loading.package_of(name), before)
-    loaded.sources.pop("mbsd", None)  # it counts anyway
-    inputs = loaded.joined(recorder.inputs())
+            return FORMATS[form][1](Wanted(solution, time, out, parts))
+
+    (content, left_out), inputs = loading.recorded(name, written)
     file = file_of(out, form)
     write_bytes(file, content)
     Stage(out, f"export-{form}", _key(parts, inputs, form, time), [file]).record(inputs=inputs.names(), time=time)
@@ -60,16 +57,14 @@ def is_fresh(name: str, form: str) -> bool:
     notes = Stage(out, f"export-{form}", "", []).notes()
     inputs, time = observed(notes.get("inputs")), notes.get("time", 0.0)
     file = file_of(out, form)
-    return bool(inputs) and Stage(out, f"export-{form}", _key(_parts(out), inputs, form, time), [file]).is_fresh()
+    if not inputs:
+        return False
+    return Stage(out, f"export-{form}", _key(solving.parts_of(out), inputs, form, time), [file]).is_fresh()
 
 
 def file_of(out: Out, form: str) -> Path:
     """Return where the file of a format is."""
     return out.folder / "export" / f"{out.name}{FORMATS[form][0]}"
-
-
-def _parts(out: Out) -> contract.Parts | None:
-    return contract.read_parts(out.parts, out.name) if out.parts.is_file() else None
 
 
 def _key(parts: contract.Parts | None, inputs: Inputs, form: str, time: float) -> str:

@@ -25,7 +25,7 @@ from pathlib import Path
 from types import CodeType, FrameType, ModuleType
 from typing import Any, Literal
 
-from mechanisms.stages.loading.inputs import is_installed
+from mechanisms.stages.loading.inputs import Inputs, is_installed, loaded_inputs, recording
 from shared.stage.errors import UserError, did_you_mean
 from shared.stage.paths import (
     MECHANISMS,
@@ -243,6 +243,25 @@ def has(name: str, file: File) -> bool:
     """Return True if a mechanism has this file; parts.py and shot.py may be left out."""
     path = mechanism_file(name, file)
     return defines(path, file) if file != "mechanism" and is_single_file(name) else path.is_file()
+
+
+def recorded[Result](
+    name: str, make: Callable[[], Result], files: Sequence[File] = ("mechanism",), solver: bool = False
+) -> tuple[Result, Inputs]:
+    """Return what ``make`` returns, and what the author's ``files`` that run in it are made of and read.
+
+    The solver as a whole is among these only if asked for: for stages that solve it counts anyway.
+    """
+    before = set(sys.modules)
+    with recording() as recorder:
+        made = make()
+    inputs = recorder.inputs()
+    for file in files:
+        loaded = loaded_inputs(mechanism_file(name, file), package_of(name), before)
+        if not solver:
+            loaded.sources.pop("mbsd", None)
+        inputs = loaded.joined(inputs)
+    return made, inputs
 
 
 @contextmanager

@@ -6,18 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from mechanisms.stages.loading import loading
-from mechanisms.stages.loading.loading import load, params
 from mechanisms.stages.loading.wishes import wished_scale
-from mechanisms.stages.solve import solving
 from mechanisms.stages.solve.masses import bare_solution, depends_on_masses, leaves_masses
-from mechanisms.stages.solve.solving import build
+from mechanisms.stages.solve.solving import model_of
 from shared.contract import Mount, consistency, mounted
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
 
 if TYPE_CHECKING:
-    from mbsd import Mechanism
     from shared.contract import Mass
     from shared.contract.parts import Kind
     from shared.shapes.solid import Solid
@@ -34,7 +30,7 @@ def needs_masses(name: str) -> bool:
     from mbsd import MechanismError
 
     try:
-        return leaves_masses(_build(name)[0])
+        return leaves_masses(model_of(name)[0])
     except (UserError, MechanismError):
         return True
 
@@ -47,16 +43,10 @@ def needs_machine(name: str) -> bool:
     from mbsd import MechanismError
 
     try:
-        m, module = _build(name)
+        m, module, _ = model_of(name)
         return leaves_masses(m) and (hasattr(module, "motion") or m.mobility().dof > len(m.drivers))
     except (UserError, MechanismError):
         return True
-
-
-def _build(name: str) -> tuple[Mechanism, Any]:
-    """Return the mechanism, whose bodies have the masses that mechanism.py gives, and its module."""
-    module, p = loading.load(name, "mechanism"), loading.params(name)
-    return solving.build(name, module, p), module
 
 
 # How a machine stands, from what ``parts()`` says, shot.py wishes and the model has.
@@ -73,8 +63,7 @@ def mount_of(name: str, bodies: Any, wish: Kind | None) -> Mount:
     Raises UserError for one that parts() says and that cannot be.
     """
     if follows_gravity(bodies, wish):
-        m = build(name, load(name, "mechanism"), params(name))
-        return mounted(m.gravity or (0.0, 0.0), wish)
+        return mounted(model_of(name)[0].gravity or (0.0, 0.0), wish)
     said = getattr(bodies, "mount", None)
     if said is None:
         return Mount()

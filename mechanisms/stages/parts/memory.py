@@ -1,4 +1,6 @@
-"""The memory of the stage: Params that parts.py used, their plain values, and pieces kept from the last run."""
+"""The memory of the stage: Params that parts.py used, their plain values, the files that it read, and pieces kept from
+the last run.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +8,13 @@ import ast
 import dataclasses
 import enum
 import hashlib
+import importlib
 import io
 import os
 import shutil
 import time
-from collections.abc import Callable, Iterable
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path, PurePath
 from typing import Any
@@ -20,14 +23,13 @@ import msgspec
 
 from mbsd.dependencies.imported import absolute_name
 from mbsd.dependencies.inputs import DYNAMIC
+from mbsd.dependencies.recorder import Recorder
 from mechanisms.stages.loading.inputs import Inputs, observed
 from shared.contract import Piece
 from shared.stage.errors import BUSY, UserError
 from shared.stage.face import said, to_run
 from shared.stage.paths import Out, refuse_links
 from shared.stage.stages import Stage, key_of
-
-# Finds which parameters a function reads, so that a change of any other one makes nothing anew.
 
 
 def traced(params: Any) -> tuple[Any, set[str]]:
@@ -254,3 +256,54 @@ class KeptPieces:
         """Forget them all."""
         refuse_links(self.folder)
         shutil.rmtree(self.folder, ignore_errors=True)
+
+
+# Files that the CAD kernel opens on its own: STEP, IGES, BREP, STL and fonts. It is compiled, so Python does not notice
+# these; its reading functions are replaced while parts.py runs.
+
+READERS = (
+    ("STEPControl", "STEPControl_Reader", "ReadFile"),
+    ("STEPCAFControl", "STEPCAFControl_Reader", "ReadFile"),
+    ("IGESControl", "IGESControl_Reader", "ReadFile"),
+    ("BRepTools", "BRepTools", "Read_s"),
+    ("BinTools", "BinTools", "Read_s"),
+    ("RWStl", "RWStl", "ReadFile_s"),
+    ("StlAPI", "StlAPI", "Read_s"),
+    ("StlAPI", "StlAPI_Reader", "Read"),
+    ("RWGltf", "RWGltf_CafReader", "Perform"),
+    ("VrmlAPI", "VrmlAPI_CafReader", "Perform"),
+    ("Font", "Font_FontMgr", "CheckFont"),
+)
+"""Module, class and function of OCP; a name that ends in ``_s`` is static."""
+
+
+@contextmanager
+def reported_cad_files(recorder: Recorder) -> Iterator[None]:
+    """Count as read every file whose name the kernel's reading functions get in this block."""
+    replaced: list[tuple[Any, str, Any]] = []
+    try:
+        for module, kind, function in READERS:
+            owner = getattr(importlib.import_module(f"OCP.{module}"), kind)
+            plain = getattr(owner, function)
+            reporting = _reporting(plain, recorder)
+            replaced.append((owner, function, vars(owner).get(function)))
+            setattr(owner, function, staticmethod(reporting) if function.endswith("_s") else reporting)
+        yield
+    finally:
+        for owner, function, plain in replaced:
+            if plain is None:
+                delattr(owner, function)
+            else:
+                setattr(owner, function, plain)
+
+
+def _reporting(plain: Callable[..., Any], recorder: Recorder) -> Callable[..., Any]:
+    def reporting(*arguments: Any, **options: Any) -> Any:
+        for value in (*arguments, *options.values()):
+            if hasattr(value, "ToCString"):
+                value = value.ToCString()
+            if isinstance(value, str):
+                recorder.read(value)
+        return plain(*arguments, **options)
+
+    return reporting

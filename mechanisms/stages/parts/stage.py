@@ -23,7 +23,7 @@ from mechanisms.stages.loading.loading import author_code, has, load, package_of
 from mechanisms.stages.loading.wishes import of_shot, scaling, wishing
 from mechanisms.stages.parts import memory
 from mechanisms.stages.parts.automatic_solids import needs_machine, needs_masses
-from mechanisms.stages.parts.memory import KeptPieces, fields_of, plain_text, traced
+from mechanisms.stages.parts.memory import KeptPieces, fields_of, only_annotates, plain_text, reported_cad_files, traced
 from shared import contract
 from shared.cluster.address import address
 from shared.contract import Parts, Provenance, write_parts
@@ -47,7 +47,7 @@ SOURCES = [
     *(_STAGES / "parts" / f"{name}.py" for name in _STAGE),
     *contract_sources(),
 ]
-_MOTION = ("solving", "refinement", "masses")
+_MOTION = ("solving", "masses")
 _AUTOMATIC = ("automatic", "loading/loading.py")
 AUTOMATIC = [
     *SOURCES,
@@ -113,7 +113,7 @@ def _wish(name: str, scale: Scale | None = None, with_machine: bool = True) -> _
     return _Wish(by_itself, of_shot(name), scale, masses)
 
 
-class _Found(NamedTuple):
+class _Result(NamedTuple):
     """All that the stage writes."""
 
     document: Parts
@@ -122,7 +122,7 @@ class _Found(NamedTuple):
     inputs: Inputs
 
 
-def _made_here(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Recorder) -> _Found:
+def _made_here(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Recorder) -> _Result:
     """Run the author's code; ``recorder`` has seen what mechanism.py read. A refusal is remembered."""
     began, seen = time.monotonic(), _Seen()
     try:
@@ -156,7 +156,7 @@ def _kept_pieces(out: Out) -> KeptPieces:
     return KeptPieces(out.folder / ".pieces", key_of(sources_hash(*SOURCES), versions(*PACKAGES), densities))
 
 
-def _described(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Recorder, seen: _Seen) -> _Found:
+def _described(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Recorder, seen: _Seen) -> _Result:
     from mechanisms.stages.parts.automatic_solids import follows_gravity, mount_of
     from mechanisms.stages.parts.bodies import described_body
     from shared.shapes.bodies import Bodies
@@ -191,10 +191,10 @@ def _described(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Re
         may_touch=sorted(getattr(bodies, "touching", ())),
         pieces_may_touch=sorted(getattr(bodies, "pieces_touching", ())),
     )
-    return _Found(document, files, reads, inputs)
+    return _Result(document, files, reads, inputs)
 
 
-def _of_cluster(out: Out, given: Any, wish: _Wish, recorder: Recorder) -> _Found | None:
+def _of_cluster(out: Out, given: Any, wish: _Wish, recorder: Recorder) -> _Result | None:
     """Return the parts that a worker of the cluster made; None where they did not follow from what is here."""
     from mechanisms.stages.parts.on_cluster.dealt import made_elsewhere
 
@@ -211,7 +211,7 @@ def _of_cluster(out: Out, given: Any, wish: _Wish, recorder: Recorder) -> _Found
             "parts", f"{out.title}: its files read something that the worker has not, or has otherwise; it is made here"
         )
         return None
-    return _Found(document, made.files, reads, inputs)
+    return _Result(document, made.files, reads, inputs)
 
 
 def are_current(name: str) -> bool:
@@ -289,7 +289,6 @@ def _more_than_values(name: str, given: Any, reads: list[str]) -> bool:
     it imports may use other names of mechanism.py.
     """
     from mechanisms.stages.loading.inputs import author_files
-    from mechanisms.stages.parts.memory import only_annotates
 
     fields, package = fields_of(given), package_of(name)
     if is_single_file(name) or any(read not in fields or plain_text(fields[read]) is None for read in reads):
@@ -303,7 +302,6 @@ def _build(name: str, given: Any, seen: _Seen) -> dict[str, list[Any]]:
     """Return the solids by body; ``seen`` gets what parts.py reads, also where it fails."""
     from mechanisms.stages.loading.inputs import loaded_inputs
     from mechanisms.stages.parts.bodies import refuse_unfit
-    from mechanisms.stages.parts.cad_reads import reported_cad_files
 
     if not has(name, "parts"):
         from mechanisms.stages.parts.automatic_solids import solids_of

@@ -33,7 +33,7 @@ HEADER = (
 
 
 @dataclass(frozen=True, eq=False)
-class Made:
+class Product:
     """Equal pieces that are to be made."""
 
     names: tuple[str, ...]
@@ -64,7 +64,7 @@ class Bought:
     material: str
 
 
-def markdown(title: str, bed: str, made: Sequence[Made], bought: Sequence[Bought]) -> str:
+def markdown(title: str, bed: str, made: Sequence[Product], bought: Sequence[Bought]) -> str:
     """Return the lists as a page."""
     count = sum(len(part.names) for part in made)
     mass = sum(len(part.names) * part.mass for part in made)
@@ -87,7 +87,7 @@ def markdown(title: str, bed: str, made: Sequence[Made], bought: Sequence[Bought
     return "\n".join(lines) + "\n"
 
 
-def table(made: Sequence[Made], bought: Sequence[Bought]) -> str:
+def table(made: Sequence[Product], bought: Sequence[Bought]) -> str:
     """Return the lists as CSV: a row for each kind of piece, ``do`` is make or buy."""
     rows: list[list[object]] = []
     for part in made:
@@ -102,7 +102,7 @@ def table(made: Sequence[Made], bought: Sequence[Bought]) -> str:
     return csv_text(HEADER, rows)
 
 
-def _cells(part: Made) -> list[str]:
+def _cells(part: Product) -> list[str]:
     size = " x ".join(f"{length:.2f}" for length in part.piece.size)
     plates = ", ".join(
         f"{plate} ({times})" if times > 1 and len(set(part.plates)) > 1 else f"{plate}"
@@ -112,7 +112,7 @@ def _cells(part: Made) -> list[str]:
     return [part.name, str(len(part.names)), part.material, size, written(part.mass, "kg"), where, _outline(part)]
 
 
-def _outline(part: Made) -> str:
+def _outline(part: Product) -> str:
     if part.sheet is None:
         return ""
     words = f"[{part.outline}]({part.outline})"
@@ -136,7 +136,7 @@ def bought_of(pieces: Mapping[str, Piece]) -> list[Bought]:
     return [Bought(what, tuple(kinds[what, material]), material) for what, material in sorted(kinds)]
 
 
-def made_of(pieces: Mapping[str, Piece], meshes: Sequence[MeshPiece], bed: Bed) -> list[Made]:
+def made_of(pieces: Mapping[str, Piece], meshes: Sequence[MeshPiece], bed: Bed) -> list[Product]:
     """Return all pieces to make, equal pieces together, each as it lies on the bed."""
     down = [laid(mesh.triangles) for mesh in meshes]
     names = [mesh.name for mesh in meshes]
@@ -144,20 +144,20 @@ def made_of(pieces: Mapping[str, Piece], meshes: Sequence[MeshPiece], bed: Bed) 
     for group in groups([(pieces[name].material, piece) for name, piece in zip(names, down, strict=True)]):
         first, piece = pieces[names[group[0]]], down[group[0]]
         fits = fitting(piece, bed[:2]) if piece.size[2] <= bed[2] else None
-        part = Made(tuple(names[k] for k in group), first.material, first.mass.mass, fits or piece)
+        part = Product(tuple(names[k] for k in group), first.material, first.mass.mass, fits or piece)
         parts.append(part if fits else replace(part, bed=_bed_for(part, bed)))
     return parts
 
 
-def _bed_for(part: Made, bed: Bed) -> str:
+def _bed_for(part: Product, bed: Bed) -> str:
     """Return the bed that a piece needs, in whole millimetres."""
     x, y, z = (math.ceil(length - 1e-6) for length in part.piece.size)
     return f"{x} x {y}" + (f" x {z}" if math.isfinite(bed[2]) else "")
 
 
-def outlined(out: Out, pieces: Mapping[str, Piece], made: Iterable[Made]) -> tuple[list[Made], dict[str, bytes]]:
+def outlined(out: Out, pieces: Mapping[str, Piece], made: Iterable[Product]) -> tuple[list[Product], dict[str, bytes]]:
     """Return the pieces with the outlines of those that can be cut from a sheet, and the DXF files."""
-    parts: list[Made] = []
+    parts: list[Product] = []
     files: dict[str, bytes] = {}
     for part in made:
         sheet = sheet_of(part.piece)
@@ -174,8 +174,8 @@ def outlined(out: Out, pieces: Mapping[str, Piece], made: Iterable[Made]) -> tup
 
 
 def plates_of(
-    title: str, made: Sequence[Made], bed: Bed, gap: float, stem: str = "plate"
-) -> tuple[list[Made], dict[str, bytes]]:
+    title: str, made: Sequence[Product], bed: Bed, gap: float, stem: str = "plate"
+) -> tuple[list[Product], dict[str, bytes]]:
     """Return the pieces with the plates that the pieces lie on, and the files of these, whose names begin with
     ``stem``.
     """

@@ -19,7 +19,7 @@ from shared.stage.stages import Stage, key_of, versions
 if TYPE_CHECKING:
     from mechanisms.stages.clearance.pieces import MeshPiece
     from mechanisms.stages.print.laying import Bed
-    from mechanisms.stages.print.making import Bought, Made
+    from mechanisms.stages.print.making import Bought, Product
     from shared.contract import Parts
 
 
@@ -79,7 +79,7 @@ def run(name: str, bed: str = "", gap: str = "", scale: str = "") -> None:
 
 def laid_out(
     out: Out, parts: Parts, meshes: list[MeshPiece], bed: Bed, gap: float
-) -> tuple[dict[str, bytes], list[Made], list[Bought]]:
+) -> tuple[dict[str, bytes], list[Product], list[Bought]]:
     """Return the files by their names, the lists last, and what is on these."""
     from mechanisms.stages.print.making import bought_of, made_of, markdown, outlined, plates_of, table
 
@@ -110,7 +110,7 @@ def gap_of(text: str) -> float:
     return float(text)
 
 
-def _tell_large(name: str, parts: list[Made], bed: Bed, ratio: float) -> None:
+def _tell_large(name: str, parts: list[Product], bed: Bed, ratio: float) -> None:
     """Name the pieces that are larger than the bed, the largest first, with the bed and the scale that fit all."""
     if not parts:
         return
@@ -132,7 +132,7 @@ def _tell_large(name: str, parts: list[Made], bed: Bed, ratio: float) -> None:
     )
 
 
-def _tell_thin(name: str, made: list[Made]) -> None:
+def _tell_thin(name: str, made: list[Product]) -> None:
     """Name pieces that have walls thinner than a nozzle, the thinnest first."""
 
     from mechanisms.stages.print.making import NOZZLE, thinnest
@@ -148,7 +148,7 @@ def _tell_thin(name: str, made: list[Made]) -> None:
         )
 
 
-def _summary(name: str, files: dict[str, bytes], made: list[Made], bought: list[Bought], bed: Bed) -> str:
+def _summary(name: str, files: dict[str, bytes], made: list[Product], bought: list[Bought], bed: Bed) -> str:
     def count(suffix: str, word: str) -> str:
         return counted(sum(file.endswith(suffix) for file in files), word)
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import TYPE_CHECKING, Literal
 
-from mechanisms.stages.loading import loading
 from mechanisms.stages.solve import solving
 from shared.contract.materials import MATERIALS
 from shared.contract.quantity import written
@@ -171,7 +170,6 @@ def _estimate(m: Mechanism, names: list[str], left_out: bool) -> list[str]:
     """Give these bodies the mass of plates; the sentence that says so."""
     if not names:
         return []
-
     estimates = estimated_masses(m)
     for name in names:
         m.set_mass(name, estimates[name].mass, estimates[name].com, estimates[name].inertia)
@@ -211,8 +209,7 @@ def bare_solution(name: str, masses: Mapping[str, Mass] | None = None) -> Soluti
     Poses of a mechanism whose drivers fix every freedom do not depend on masses; those of a simulation do, so parts
     made for it follow from a motion with their own masses (automatic_solids.py). Raises UserError.
     """
-    module, p = loading.load(name, "mechanism"), loading.params(name)
-    m = solving.build(name, module, p)
+    m, module, p = solving.model_of(name)
     sources, _ = give_masses(m, None)
     for body in (body for body, source in sources.items() if source == "estimate" and body in (masses or {})):
         mass = (masses or {})[body]
@@ -222,5 +219,4 @@ def bare_solution(name: str, masses: Mapping[str, Mass] | None = None) -> Soluti
 
 def depends_on_masses(name: str, solution: Solution) -> bool:
     """Return True if the motion is a simulation of bodies some of which have no mass in mechanism.py."""
-    m = solving.build(name, loading.load(name, "mechanism"), loading.params(name))
-    return solution.work is not None and "estimate" in give_masses(m, None)[0].values()
+    return solution.work is not None and leaves_masses(solving.model_of(name)[0])

@@ -79,8 +79,6 @@ def _cam(data: Any) -> tuple[list[tuple[float, float]], dict[str, float]]:
 
 def _curve(points: Any, closed: bool) -> list[tuple[float, float]]:
     """Return the smooth curve through the points of a joint or terrain."""
-    import numpy as np
-
     from mbsd.model.plane_curves import curve_pieces
 
     breaks, coefficients = curve_pieces(np.array(points, float), closed)  # (pieces, 2, 6) by rising powers
@@ -94,8 +92,6 @@ def _curve(points: Any, closed: bool) -> list[tuple[float, float]]:
 
 def _profile(curve: Any) -> list[tuple[float, float]]:
     """Return the profile y(x) of a surface with give."""
-    import numpy as np
-
     x = np.linspace(float(curve.x[0]), float(curve.x[-1]), POINTS + 1)
     return _pairs(np.stack([x, curve(x)[:, 0]], axis=1))
 

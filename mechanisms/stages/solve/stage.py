@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import sys
 from typing import TYPE_CHECKING
 
 from mechanisms.stages.loading import loading
-from mechanisms.stages.loading.inputs import Inputs, observed, recording, sources_state
+from mechanisms.stages.loading.inputs import Inputs, observed, sources_state
 from mechanisms.stages.solve import solving
 from mechanisms.stages.solve.skeleton_file import main_material
 from shared import contract
@@ -14,7 +13,7 @@ from shared.contract.quantity import counted, written
 from shared.contract.skeleton import write_skeleton
 from shared.stage import console
 from shared.stage.files import sources_hash
-from shared.stage.paths import ROOT, Out, mechanism_file
+from shared.stage.paths import ROOT, Out
 from shared.stage.stages import Stage, contract_sources, key_of, versions
 
 if TYPE_CHECKING:
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
 NOISE = 1e-9
 """An effort below this part of the largest reaction is rounding."""
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite")
-_MOTION = ("solving", "refinement", "masses")
+_MOTION = ("solving", "masses")
 _STAGE = ("stage", *_MOTION, "motion_file", "skeleton_file")
 SOURCES = [
     *(ROOT / "mechanisms" / "stages" / "solve" / f"{name}.py" for name in _STAGE),
@@ -39,26 +38,22 @@ def run(name: str, parts_are_outdated: bool = False) -> None:
     Parts of an older version count only if mechanism.py does not give all masses. Raises UserError.
     """
     out = Out(name)
-    parts = _parts(out)
+    parts = parts_of(out)
     if parts is not None and parts_are_outdated:
         from mechanisms.stages.solve.masses import leaves_masses
 
-        m = solving.build(name, loading.load(name, "mechanism"), loading.params(name))
-        parts = parts if leaves_masses(m) else None
+        parts = parts if leaves_masses(solving.model_of(name)[0]) else None
     if _is_fresh(out, parts):
         console.say("solve", f"{name}: nothing to do")
         return
-    from mechanisms.stages.loading.inputs import loaded_inputs
     from mechanisms.stages.solve.motion_file import to_motion
     from mechanisms.stages.solve.skeleton_file import skeleton_of
 
-    before = set(sys.modules)
-    with recording() as recorder:
+    def moved() -> tuple[Solution, contract.Motion]:
         solution, sources = solve(name, parts)
-        motion = to_motion(solution, parts, "", versions(*PACKAGES), sources)
-    loaded = loaded_inputs(mechanism_file(name), loading.package_of(name), before)
-    loaded.sources.pop("mbsd", None)  # it counts anyway
-    inputs = loaded.joined(recorder.inputs())
+        return solution, to_motion(solution, parts, "", versions(*PACKAGES), sources)
+
+    (solution, motion), inputs = loading.recorded(name, moved)
     key = motion_key(parts, inputs)
     motion.provenance.inputs = key
     write_skeleton(out.skeleton, skeleton_of(solution, motion.provenance))
@@ -70,10 +65,11 @@ def run(name: str, parts_are_outdated: bool = False) -> None:
 def is_fresh(name: str) -> bool:
     """Return True if there is nothing to do. Raises UserError where parts.json cannot be read."""
     out = Out(name)
-    return _is_fresh(out, _parts(out))
+    return _is_fresh(out, parts_of(out))
 
 
-def _parts(out: Out) -> contract.Parts | None:
+def parts_of(out: Out) -> contract.Parts | None:
+    """Return the parts that are there, if there are any."""
     return contract.read_parts(out.parts, out.name) if out.parts.is_file() else None
 
 
@@ -98,8 +94,7 @@ def solve(name: str, parts: contract.Parts | None) -> tuple[Solution, dict[str, 
     """
     from mechanisms.stages.solve.masses import give_masses
 
-    module, p = loading.load(name, "mechanism"), loading.params(name)
-    m = solving.build(name, module, p)
+    m, module, p = solving.model_of(name)
     sources, sentences = give_masses(m, parts)
     for sentence in sentences:
         console.say("solve", f"{name}: {sentence}")

@@ -7,7 +7,7 @@ An author may say so, where one string serves all numbers of a tuple,
     )
 
 or in the comment beside the number: "# of a charge (J/m^3)", "# metres", "# crank, rod, slider". Where he says nothing,
-the model does (decided.py).
+the model does, as below.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ import scipy.optimize  # noqa: E402, F401  (a fit needs it, and it takes long)
 
 import mechanisms.stages.loading.inputs  # noqa: E402
 import mechanisms.stages.solve.masses  # noqa: E402
-import mechanisms.stages.solve.refinement  # noqa: E402, F401
+import mechanisms.stages.solve.solving  # noqa: E402, F401
 from mbsd import Mechanism, constant_rate, fit_path  # noqa: E402
 from mechanisms.stages.solve.masses import give_masses  # noqa: E402
 from render.view.document import encode  # noqa: E402

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.layout.items import spans_meet
+from mechanisms.stages.automatic.layout.items import span, spans_meet
 from mechanisms.stages.automatic.layout.planar import core_gaps, placed
 
 
@@ -15,7 +15,7 @@ def meets(made: Automatic) -> list[str]:
     """
     layout, meetings = made.layout, []
     at = np.linspace(0, len(layout.times) - 1, 60).astype(int)
-    spans = [item.reach.span(made.decided) for item in layout.items]
+    spans = [span(item.reach, made.decided) for item in layout.items]
     seen = [placed(item.shape.core_at(at), layout.poses[item.body][at]) for item in layout.items]
     for j, second in enumerate(layout.items):
         for i, first in enumerate(layout.items[:j]):

@@ -1,4 +1,4 @@
-"""The sweep check: it passes what is free, finds what is not, and its bounds hold."""
+"""The proof of clearance: pairs that pass, collisions, bodies that stay far apart, and its speed in facets."""
 
 from __future__ import annotations
 
@@ -6,19 +6,30 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
 
-from mechanisms.stages.clearance.outlines import least_gap
-from mechanisms.stages.clearance.path import paths, points, relative
-from mechanisms.stages.clearance.pieces import MeshPiece
+from mechanisms.stages.automatic.layout.sizes import of_pin
+from mechanisms.stages.clearance import outlines, path
+from mechanisms.stages.clearance import pieces as distinct_file
+from mechanisms.stages.clearance import stage as clearance_stage
+from mechanisms.stages.clearance.outlines import BESIDE, least_gap, never_over
+from mechanisms.stages.clearance.path import BodyPath, paths, points, relative
+from mechanisms.stages.clearance.pieces import MeshPiece, distinct
 from mechanisms.stages.clearance.search import RESOLUTION as SHARP
 from mechanisms.stages.clearance.search import Sweep
-from mechanisms.stages.clearance.turn import RESOLUTION, turn_gap
+from mechanisms.stages.clearance.turn import RESOLUTION, _bounds, _box_gap, turn_gap
+from mechanisms.stages.parts_files import TOLERANCE, read_triangles, stl_bytes
 from shared.contract import Motion
+from shared.shapes.pin import pin
+from shared.shapes.standards import Fit
 from shared.stage.errors import UserError
-from tests.mechanisms.clearance.clearance_pieces import box, checked, disc, four_bar_pieces, lifted, prism
+from tests.mechanisms.clearance.clearance_pieces import box, checked, disc, four_bar_pieces, lifted, parts_of, prism
+from tests.mechanisms.clearance.test_clearance_between import cam_motion, motion_of
 from tools.models.motions import four_bar_motion
+
+# The sweep check: it passes what is free, finds what is not, and its bounds hold.
 
 
 def test_free_layers_pass_and_the_nearest_pairs_are_told() -> None:
@@ -184,3 +195,146 @@ def test_poses_between_samples_follow_the_motion() -> None:
         assert np.abs(error[:, 2]).max() < 2e-5
     seen = relative(paths(fine)["coupler"].pose, paths(fine)["coupler"].pose)
     assert np.abs(seen).max() == 0.0
+
+
+# Pieces that never lie over each other are told by their sides alone, and the others are not.
+
+
+def turned_over(first: MeshPiece, second: MeshPiece, turn: float) -> Sweep:
+    """The first piece turns about the origin by ``turn``, the second one stands."""
+    times = np.linspace(0.0, 1.0, 49)
+    zero = np.zeros((49, 3))
+    still = BodyPath(times, zero, zero, zero)
+    unit = np.array([0.0, 0.0, 1.0])
+    return Sweep(first, second, BodyPath(times, turn * times[:, None] * unit, zero + turn * unit, zero), still)
+
+
+@given(st.floats(-6.0, 6.0), st.floats(-3.0, 3.0), st.sampled_from([0.1, 1.0, 30.0]), st.booleans())
+@example(0.0, 0.5, 1.0, False)  # inside its shadow all the time
+@settings(max_examples=25)
+def test_a_post_that_goes_round_over_a_disc_is_over_it_where_their_circles_meet(
+    apart: float, above: float, scale: float, under: bool
+) -> None:
+    """``apart`` is how far from the disc's rim the post's circle passes, ``above`` how high over it, both in gaps."""
+    gap = 1.0
+    low, high = (above * gap, 20.0) if not under else (-20.0, -10.0 - above * gap)
+    post = disc("arm", "post", (40.0 + gap * apart) * scale, 0.0, 5.0 * scale, low * scale, high * scale, 48)
+    step = disc("ground", "step", -20.0 * scale, 0.0, 15.0 * scale, -10.0 * scale, 0.0, 48)
+    told = never_over(turned_over(post, step, 2 * math.pi), gap * scale)
+    near_in_height = -1e-7 <= above < 1.0
+    sagitta = 20.0 * (1 - math.cos(math.pi / 48))
+    if not near_in_height or apart > BESIDE + 0.01:
+        assert told
+    elif apart < -sagitta:
+        assert not told
+
+
+def test_faces_that_are_over_each_other_for_a_moment_are_seen() -> None:
+    """A tooth that passes over the corner of a plate once in a turn, between two samples."""
+    tooth = box("arm", "tooth", 30.0, 0.0, 0.5, (2.0, 2.0, 4.0))
+    for reach, told in ((28.6, True), (29.3, False)):
+        at = 2.5 * 2 * math.pi / 48
+        place = (reach - 5.0) * np.array([math.cos(at), math.sin(at)])
+        assert never_over(turned_over(tooth, disc("ground", "plate", *place, 5.0, -4.0, 0.0), 2 * math.pi), 1.0) == told
+
+
+@pytest.mark.parametrize(("collar", "over"), [(30.6, False), (29.9, True)])
+def test_the_least_gap_is_that_of_all_facets(collar: float, over: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A cam whose collar is under the roller and reaches out of it to the side, with and without lying under it."""
+    motion = cam_motion(np.linspace(0.0, 1.0, 49), 10.0, 41.2 if not over else 39.7)
+    cam, rim = (disc("cam", "cam", 10.0, 0.0, r, 0.0, top, 60) for r, top in ((collar - 0.6, 8.0), (collar, 4.0)))
+    mesh = (cam.manifold + rim.manifold).to_mesh64()
+    cam = MeshPiece("cam", "cam", np.asarray(mesh.vert_properties)[np.asarray(mesh.tri_verts)])
+    roller = disc("follower", "roller", 0.0, 0.0, 10.0, 4.2, 7.0, 24)
+    where = paths(motion)
+    sweep = Sweep(cam, roller, where["cam"], where["follower"])
+    quick = outlines.least_gap(sweep, 5.0)
+    assert never_over(sweep, quick.gap + 0.01) != over
+    monkeypatch.setattr(outlines, "never_over", lambda sweep, gap: False)
+    whole = outlines.least_gap(sweep, 5.0)
+    assert quick.gap == pytest.approx(whole.gap, abs=SHARP)
+    assert quick.gap - SHARP - 1e-3 <= quick.proven <= whole.gap + 1e-9
+
+
+# Bodies that are settled at once are those whose pieces stay apart one by one.
+
+
+REACH = 5.0
+
+
+def snake(count: int) -> Motion:
+    """Bodies side by side (70 mm) that swing to and fro and turn, each at its own rate."""
+    t = np.linspace(0.0, 1.0, 41)
+    bodies = {}
+    for k in range(count):
+        w, a = 3.0 + k, 0.04
+        s, c = a * np.sin(w * t), a * np.cos(w * t)
+        turn = np.stack([w * t, w + 0 * t, 0 * t])
+        bodies[f"b{k}"] = (0.07 * k + s, c, turn[0], w * c, -w * s, turn[1], -w * w * s, -w * w * c, turn[2])
+    return motion_of(t, **bodies)
+
+
+def test_bodies_that_are_far_have_pieces_that_are_apart() -> None:
+    motion = snake(6)
+    pieces = [box(f"b{k}", f"p{k}", 12.0, 5.0, 0.0, (20.0, 8.0, 4.0)) for k in range(6)]
+    where = paths(motion)
+    far_pairs = path.far_bodies(pieces, where, REACH)
+    assert 0 < len(far_pairs) < 15
+    for a in pieces:
+        for b in pieces:
+            if frozenset((a.body, b.body)) in far_pairs:
+                assert Sweep(a, b, where[a.body], where[b.body]).is_apart(REACH)
+
+
+def test_the_check_is_the_same_with_and_without(monkeypatch: pytest.MonkeyPatch) -> None:
+    motion = snake(5)
+    pieces = [box(f"b{k}", f"p{k}", 0.0, 0.0, 6.0 * k, (20.0, 8.0, 4.0)) for k in range(5)]
+    clearance = clearance_stage.check(parts_of(pieces), motion, pieces, "0" * 64)
+    monkeypatch.setattr(path, "far_bodies", lambda *_: set())
+    assert clearance_stage.check(parts_of(pieces), motion, pieces, "0" * 64) == clearance
+    assert clearance.apart > 0
+
+
+# What makes the proof of clearance quick gives what the plain way gives.
+
+
+few = st.sampled_from([-1.5, -0.0, 0.0, 1e-300, 0.1, 0.1 + 2**-56, 7.0])
+
+
+@given(hnp.arrays(np.float64, st.tuples(st.integers(1, 40), st.integers(1, 4)), elements=few))
+def test_distinct_rows_are_those_of_a_sort(rows: np.ndarray) -> None:
+    first, which = distinct(rows)
+    assert np.array_equal(rows[first][which], rows)
+    assert len(first) == len(np.unique(rows, axis=0))
+
+
+def test_rows_of_one_hash_are_told_apart(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(distinct_file, "_FACTORS", np.zeros(4, dtype=np.uint64))
+    rows = np.array([[1.0, 2.0], [3.0, 4.0], [1.0, 2.0], [4.0, 3.0]])
+    first, which = distinct(rows)
+    assert len(first) == 3
+    assert np.array_equal(rows[first][which], rows)
+
+
+@given(st.integers(0, 1000), st.integers(1, 300), st.integers(1, 90), st.floats(0.0, 3.0))
+def test_bounds_of_boxes_in_groups_are_those_of_all_pairs(seed: int, n: int, m: int, enough: float) -> None:
+    rng = np.random.default_rng(seed)
+    low = [rng.uniform(0, 10, (count, 2)).round(1) for count in (n, m)]
+    a, b = (np.stack([corner, corner + rng.exponential(0.3, corner.shape)], axis=2).reshape(-1, 4) for corner in low)
+    gaps = _box_gap(a, b)
+    found_a, found_b = _bounds(a, b, enough)
+    assert np.array_equal(found_a, np.minimum(gaps.min(axis=1), enough))
+    assert np.array_equal(found_b, np.minimum(gaps.min(axis=0), enough))
+
+
+def test_meshes_of_large_parts_are_as_fine_in_proportion_and_leave_the_clearance() -> None:
+    assert of_pin(8.0, None).tolerance is None
+    assert of_pin(0.5, None).tolerance is None
+    assert of_pin(16.0, None).tolerance == pytest.approx(2 * TOLERANCE)
+    for diameter in (12.0, 60.0, 250.0):
+        sizes = of_pin(diameter, None)
+        assert TOLERANCE < (sizes.tolerance or 0.0) < 0.3 * sizes.pivot.fit.running * sizes.scale / 2
+    assert of_pin(80.0, Fit(running=0.1)).tolerance is None
+    solid = pin(120.0, 300.0).val()
+    fine, coarse = (read_triangles(stl_bytes(solid, tolerance)) for tolerance in (None, of_pin(120.0, None).tolerance))
+    assert len(coarse) < 0.7 * len(fine)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import manifold3d
+import msgspec
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -143,3 +144,22 @@ def test_the_band_goes_round_with_a_carrier() -> None:
     check(with_rims([rim, far], "b"), motion, [rim, far], "key")
     with pytest.raises(UserError, match=r"post and belt belt: belt|belt belt: belt and ground: post"):
         check(with_rims([near], "b"), motion, [near], "key")
+
+
+@pytest.mark.parametrize("released", [0.0, 0.25, 0.51, 0.99, None])
+def test_a_belt_counts_until_an_event_releases_it(released: float | None) -> None:
+    """A post comes down and enters the upper strand after 0.8 s."""
+    m = drive(turn=0.0)
+    post = m.body("post")
+    rail = m.ground.at(0.07, 0.12, -math.pi / 2)
+    m.prismatic("guide", rail, post.at(0.0, 0.0, -math.pi / 2))
+    m.drive_coordinate("down", rail, post.origin, constant_rate(0.08))
+    m.start_near(a=17, b=40, post=(0.07, 0.12, 0.0))
+    motion = solved(m, "a", "b", "post", end=1.0)
+    motion.joints["belt"] = msgspec.structs.replace(motion.joints["belt"], released=released)
+    moving = disc("post", "tip", 0.0, 0.0, 2.0, 0.0, 20.0)
+    if released is not None and released < 0.8:
+        assert checked(motion, moving).apart
+    else:
+        with pytest.raises(UserError, match=r"tip and belt belt: belt|belt belt: belt and post: tip"):
+            checked(motion, moving)

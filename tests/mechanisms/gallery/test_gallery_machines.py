@@ -1,22 +1,41 @@
-"""Machines of the gallery that shake and run up, against their closed forms and an integration by others."""
+"""The gallery's engines, gears, Geneva drive and cams, and how the machines stand."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
+from mbsd.drawing.view.carried import moving
+from mechanisms.belt_drive import mechanism as belt
 from mechanisms.four_bar_motor import mechanism as motor
+from mechanisms.planetary_gear import mechanism as planetary
+from mechanisms.rack_steering import mechanism as steering
+from mechanisms.stages.loading import loading
+from mechanisms.stages.loading.loading import has, load, params
+from mechanisms.stages.solve import solving
 from mechanisms.stages.solve.motion_file import to_motion
+from mechanisms.stages.solve.solving import build
 from mechanisms.vibration_slider_crank import mechanism as vibration
+from render.film.camera import angles
+from render.film.framing import axes
 from render.magnitudes import crank_of
 from render.plots.pages.spectra import spectrum
 from render.plots.quantities import quantity
-from shared.contract import Motion
+from shared.contract import Motion, mounted
+from shared.contract.geometry import BeltPath
+from shared.contract.shot import Shot
+from shared.stage.paths import mechanism_names
+from tests.drawing.test_carried import check
+from tests.mechanisms.every_folder import folders_and_variants
 
-# -- the shaking slider-crank ----------------------------------------------------------------------------------------
+# Machines of the gallery that shake and run up, against their closed forms and an integration by others.
 
 
 def shaken(p: vibration.Params) -> Motion:
@@ -156,3 +175,166 @@ def test_four_bar_runs_up_as_eksergians_equation_of_one_freedom_says() -> None:
     last, before = (np.interp(at - back, main_crank.angle, crank.omega) for back in (0.0, 2 * np.pi))
     np.testing.assert_allclose(last, before, rtol=2e-3)
     assert 0.05 < np.ptp(last) / last.mean() < 0.12
+
+
+# Gears of the gallery against their closed forms: Willis' equation, the dyads of a steering, Ackermann's condition.
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.integers(12, 40), st.integers(12, 40), st.integers(2, 5), st.sampled_from(["ring", "carrier", "sun"]))
+def test_planetary_gear_obeys_willis(sun: int, planet: int, planets: int, fixed: str) -> None:
+    """(w_sun - w_carrier) / (w_ring - w_carrier) = -z_ring / z_sun; planets: (w - w_carrier) z_p = -(w_sun - w_c) z_s.
+
+    R. Willis, Principles of Mechanism, 1841; VDI 2157.
+    """
+    p = replace(planetary.Params(), sun=sun, planet=planet, planets=planets, fixed=fixed)
+    sol = planetary.build(p).sweep(0.5, steps=12)
+    rate = {name: sol.body(name).omega for name in ("sun", "carrier")}
+    rate["ring"] = np.zeros(13) if fixed == "ring" else sol.body("ring").omega
+    driven = "ring" if fixed == "sun" else "sun"
+    np.testing.assert_allclose(rate[fixed], 0.0, atol=1e-10)
+    np.testing.assert_allclose(rate[driven], p.speed)
+    from_carrier = {name: speed - rate["carrier"] for name, speed in rate.items()}
+    np.testing.assert_allclose(from_carrier["sun"] * p.sun, -from_carrier["ring"] * p.ring, atol=1e-9)
+    for k in range(1, planets + 1):
+        own = sol.body(f"planet{k}").omega - rate["carrier"]
+        np.testing.assert_allclose(own * p.planet, -from_carrier["sun"] * p.sun, atol=1e-9)
+
+
+def test_planetary_gear_as_it_is() -> None:
+    """18, 18 and 54 teeth: a quarter of the sun's speed, a third backwards, three quarters of the ring's."""
+    for fixed, member, ratio in (("ring", "carrier", 1 / 4), ("carrier", "ring", -1 / 3), ("sun", "carrier", 3 / 4)):
+        p = replace(planetary.Params(), fixed=fixed)
+        m = planetary.build(p)
+        assert m.sweep(0.1, steps=2).body(member).omega == pytest.approx(ratio * p.speed)
+        assert (p.sun + p.ring) % p.planets == 0
+        assert m.period() == pytest.approx(3.0 if fixed == "carrier" else 4.0)
+
+
+def _steered(p: steering.Params, side: int, travel: np.ndarray) -> np.ndarray:
+    """The knuckle's angle by its dyad: tie rod and arm meet where two circles do."""
+    arm = p.arm * np.array([-side * math.sin(p.arm_angle), -math.cos(p.arm_angle)])
+    kingpin, inner = np.array([side * p.track / 2, 0.0]), np.array([side * p.rack / 2, -p.behind])
+    rod = np.hypot(*(kingpin + arm - inner))
+    to = inner + np.stack([travel, np.zeros_like(travel)], axis=1) - kingpin
+    away = np.hypot(*to.T)
+    beside = np.arccos((p.arm**2 + away**2 - rod**2) / (2 * p.arm * away))
+    return np.arctan2(to[:, 1], to[:, 0]) + side * beside - math.atan2(arm[1], arm[0])
+
+
+def test_rack_steering_follows_its_dyads() -> None:
+    p = steering.Params()
+    sol = steering.build(p).sweep()
+    travel = sol.body("rack").x
+    assert travel.max() == pytest.approx(p.travel)
+    np.testing.assert_allclose(travel, p.module * p.teeth / 2 * sol.body("pinion").theta, atol=1e-15)
+    for side, name in ((-1, "left"), (1, "right")):
+        np.testing.assert_allclose(sol.body(f"knuckle_{name}").theta, _steered(p, side, travel), atol=1e-12)
+
+
+def test_rack_steering_is_near_ackermann() -> None:
+    """What the docstring says: the inner wheel turns by 32 degrees, the outer is off by less than 0.5."""
+    p = steering.Params()
+    travel = np.linspace(1e-4, p.travel, 200)
+    inner, outer = _steered(p, -1, travel), _steered(p, 1, travel)
+    assert math.degrees(inner[-1]) == pytest.approx(32.0, abs=0.3)
+    ideal = np.arctan(1 / (1 / np.tan(inner) + p.track / p.wheelbase))
+    off = np.degrees(np.abs(outer - ideal))
+    assert 0.3 < off.max() < 0.5
+    assert np.degrees(inner - outer)[-1] > 7.0
+
+
+@pytest.mark.parametrize("variant", [{}, {"crossed": True}, {"teeth": 16}])
+def test_belt_drive_halves_the_speed(variant: dict[str, Any]) -> None:
+    """r1 w1 = r2 w2, and of a crossed belt -r2 w2. The chain's length is a whole number of its pitch."""
+    p = replace(belt.Params(), **variant)
+    sol = belt.build(p).sweep()
+    assert sol.t[-1] == pytest.approx(2.0)
+    ratio = (-1 if p.crossed else 1) / p.ratio
+    np.testing.assert_allclose(sol.body("large").theta, ratio * sol.body("small").theta, atol=1e-13)
+    links = BeltPath(p.radius, p.ratio * p.radius, p.distance).length / (2 * math.pi * p.radius / 16)
+    assert links == pytest.approx(56, abs=1e-4)
+
+
+# The gallery's Geneva drive and cam follower against closed forms.
+
+
+@pytest.mark.parametrize("slots", [3, 4, 5, 6])
+def test_geneva_drive_indexes_one_slot_a_turn(slots: int) -> None:
+    """Norton, Design of Machinery, ch. 2: peak speed sin / (1 - sin), acceleration tan at the entry, of pi / slots."""
+    module = loading.load("geneva_drive", "mechanism")
+    p = module.Params(slots=slots)
+    turn = 2 * math.pi / p.speed
+    sol = module.build(p).sweep(turn, 1440)
+    wheel, sine = sol.body("wheel"), math.sin(math.pi / slots)
+    assert wheel.theta[-1] - wheel.theta[0] == pytest.approx(-2 * math.pi / slots, abs=1e-12)
+    assert -wheel.omega.min() == pytest.approx(p.speed * sine / (1 - sine), rel=1e-12)  # the pin on the line of centres
+    enters = turn / 2 - (math.pi / 2 - math.pi / slots) / p.speed
+    at = int(np.searchsorted(sol.t, enters + 1e-9))  # the first output in the slot; at the entry itself it jumps
+    assert np.abs(wheel.omega[: at - 1]).max() < 1e-12  # locked
+    assert abs(wheel.alpha[at]) == pytest.approx(p.speed**2 * math.tan(math.pi / slots), rel=0.03)
+
+
+def test_an_output_right_where_the_pin_enters_its_slot_has_the_acceleration_of_one_side() -> None:
+    """Rounding decides on which side of the jump it is; the equations hold there all the same."""
+    module = loading.load("geneva_drive", "mechanism")
+    m = module.build(module.Params())
+    sol = m.sweep(m.period(), steps=1440)
+    jumps = np.abs(np.diff(sol.body("wheel").alpha)).max()
+    assert jumps > 5.0
+    assert sol.stats.acceleration_residual < 1e-7 * jumps
+
+
+@pytest.mark.parametrize("follower", ["roller", "flat", "oscillating"])
+def test_cam_follower_has_the_peaks_of_a_cycloidal_rise(follower: str) -> None:
+    """Norton, Design of Machinery, ch. 8: over an angle b and a height h, 2 h / b omega and 2 pi h / b^2 omega^2."""
+    module = loading.load("cam_follower", "mechanism")
+    p = module.Params(follower=follower)
+    sol = module.build(p).sweep(2 * math.pi / p.speed, 1440)
+    body = sol.body("follower")
+    height = p.lift / p.arm if follower == "oscillating" else p.lift
+    place, rate, second = (
+        (-body.theta, -body.omega, -body.alpha) if follower == "oscillating" else (body.y, body.vy, body.ay)
+    )
+    assert np.ptp(place) == pytest.approx(height, rel=1e-9)
+    assert rate.max() == pytest.approx(2 * height / p.rise * p.speed, rel=1e-6)
+    assert second.max() == pytest.approx(2 * math.pi * height / p.rise**2 * p.speed**2, rel=1e-4)
+
+
+# Gravity points down in every picture of the gallery, or the machine lies on a desk and has none in its plane.
+
+
+UPRIGHT = (5.0, 25.0)
+"""Elevations (degrees) of the camera at eye level of what stands."""
+
+
+@pytest.mark.parametrize("name", folders_and_variants())
+def test_gravity_is_down_in_the_picture(name: str) -> None:
+    m = build(name, load(name, "mechanism"), params(name))
+    shot = load(name, "shot").shot if has(name, "shot") else Shot()
+    gravity = np.array([*(m.gravity or (0.0, 0.0)), 0.0])
+    mount = mounted((gravity[0], gravity[1]), shot.mount)
+    azimuth, elevation = angles(shot.camera, mount)
+    right, up, forward = axes(azimuth, elevation, mount.up) @ gravity
+    if mount.kind == "desk":
+        assert not gravity.any(), f"{name} lies on a desk, but gravity is {gravity}"
+        return
+    assert UPRIGHT[0] <= math.degrees(elevation) <= UPRIGHT[1]
+    if gravity.any():
+        assert right == pytest.approx(0.0, abs=1e-12)
+        assert up < -0.9 * np.linalg.norm(gravity)
+        assert abs(forward) < 0.45 * np.linalg.norm(gravity)
+
+
+# Each stroke of each mechanism's skeleton is carried to where it is drawn.
+
+
+@pytest.mark.parametrize("name", mechanism_names())
+def test_each_stroke_is_carried_to_where_it_is_drawn(name: str) -> None:
+    module, p = loading.load(name, "mechanism"), loading.params(name)
+    solution = solving.motion_of(name, module, solving.build(name, module, p), p)
+    skeleton = moving(solution)
+    check(solution, skeleton)
+    drivers = [driver.replace("_", " ") for driver in solution.mechanism.drivers]
+    written = " ".join(label.text for label, _ in skeleton.names).replace("_", " ")
+    assert all(driver in written for driver in drivers)

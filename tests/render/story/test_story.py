@@ -215,14 +215,14 @@ def test_a_shot_says_otherwise_in_a_few_lines(out_root) -> None:
          r"this motion; its events are: rocker turns back.*"),
         (Wishes(caption="much too long a word " * 9), r"four_bar: the caption of the shot 'reason' is too long for a "
          r"picture of 640x360: it takes \d\.\d lines of 2 .*; write a shorter shot\.story\.caption"),
-        (Wishes(shots=("titel",)), r"four_bar: shot\.story\.shots\[0\] names 'titel', which is not there; known: "
+        (Wishes(shots=("titel",)), r"four_bar: shot\.story\.shots\[0\] names 'titel', which does not exist; known: "
          r"title, assembly, .*; did you mean 'title'\?"),
         (Wishes(shots=("title", "motion"), caption="Look"), r"four_bar: shot\.story\.caption is for the shot "
          r"'reason', which shot\.story\.shots leaves out; add 'reason'"),
         (Wishes(shots=("motion", "reason"), joint="B"), r"shot\.story\.joint is for the shot 'macro', .*; add 'macro'"),
         (Wishes(shots=("title",)), r"title leaves nothing to show: .* a title stands before another shot; "
          r"add motion or last"),
-        (Wishes(joint="Z"), r"four_bar: shot\.story\.joint names 'Z', which is not there; known: A, B, C, D"),
+        (Wishes(joint="Z"), r"four_bar: shot\.story\.joint names 'Z', which does not exist; known: A, B, C, D"),
         (Wishes(language="xx"), r"language is 'xx'"),
     ],
 )  # fmt: skip

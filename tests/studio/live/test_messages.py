@@ -161,7 +161,7 @@ def test_a_page_that_is_too_slow_gets_the_state_anew(monkeypatch: pytest.MonkeyP
     assert len(box) == messages.MOST
     box.add(b"one more")
     assert len(box) == 1
-    monkeypatch.setattr(messages, "LARGEST", 100)
+    monkeypatch.setattr(messages, "MOST_BYTES", 100)
     for _ in range(50):
         box.add(b"x" * 40, replaces=True)
     assert len(box) == 2

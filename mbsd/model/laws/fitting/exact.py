@@ -31,11 +31,11 @@ from mbsd.model.laws.fitting.leaves import (
     ROUNDING,
     USUAL,
     Cut,
+    check_jump,
+    check_kink,
     finest,
     given_cuts,
     merged,
-    refuse_jump,
-    refuse_kink,
     roots,
     without_edges,
 )
@@ -65,7 +65,7 @@ class DerivativeError(ModelError):
     """A derivative that its author gave is not that of f."""
 
 
-def refuse_between(law: Rows, looks: np.ndarray, rows: np.ndarray) -> None:
+def check_between(law: Rows, looks: np.ndarray, rows: np.ndarray) -> None:
     """Raise DerivativeError if a derivative is wrong between ``looks`` (n,); ``rows`` (n, 3) are the law."""
     h, far = np.diff(looks), float(np.abs(looks).max())
     size = sizes(looks, rows)
@@ -104,7 +104,7 @@ def sizes(looks: np.ndarray, rows: np.ndarray) -> np.ndarray:
     return size
 
 
-def refuse_derivatives(
+def check_derivatives(
     at: np.ndarray, left: np.ndarray, middle: np.ndarray, right: np.ndarray, size: np.ndarray
 ) -> None:
     """Raise DerivativeError if a derivative errs on any piece (n, 2), with rows (n, 3) at three times.
@@ -118,7 +118,7 @@ def refuse_derivatives(
             raise _error(order, float(at[worst, 0]), float(slope[worst]), float(given[worst]))
 
 
-def refuse_rows_of_pieces(
+def check_rows_of_pieces(
     law: Rows,
     at: np.ndarray,
     left: np.ndarray,
@@ -209,7 +209,7 @@ def exact_pieces(
     """
     if stands_still(looks, seen):
         return pieces(np.array([first, last]), np.array([[seen[0, 0], 0.0, 0.0, 0.0, 0.0, 0.0]]))
-    refuse_between(law, looks, seen)
+    check_between(law, looks, seen)
     sampled = Sampled(law)
     all_cuts = given_cuts(breaks, first, last)
     for _ in range(ROUNDS):
@@ -223,8 +223,8 @@ def exact_pieces(
     at, left, right = rows
     for cut in cuts:
         k = int(np.searchsorted(at[:, 0], cut.at))
-        refuse_jump(cut.at, left[k, 0] - right[k - 1, 0], JUMP * float(np.ptp(left[:, 0])))
-        refuse_kink(cut.at, left[k, 1] - right[k - 1, 1], KINK * float(np.abs(left[:, 1]).max()))
+        check_jump(cut.at, left[k, 0] - right[k - 1, 0], JUMP * float(np.ptp(left[:, 0])))
+        check_kink(cut.at, left[k, 1] - right[k - 1, 1], KINK * float(np.abs(left[:, 1]).max()))
     whole = float(np.ptp(seen[:, 0]))
     coefficients = _quintics(at[:, 1] - at[:, 0], left, right, max(abs(first), abs(last)), whole)
     return pieces(np.append(at[:, 0], at[-1, 1]), coefficients)
@@ -301,12 +301,12 @@ def _refined(
         narrow = width <= max(finest(*span), CLOSEST * long)
         points += [Cut(*at[k, [0, 0, 1]]) for k in np.flatnonzero(~met & narrow)]
         for k in np.flatnonzero(~met & (width < POINT * long)):
-            refuse_jump(float(at[k, 0]), right[k, 0] - left[k, 0], max(JUMP * whole, 10 * peak[1] * width[k]))
-            refuse_kink(float(at[k, 0]), right[k, 1] - left[k, 1], max(KINK * peak[1], 10 * bend[k] * width[k]))
+            check_jump(float(at[k, 0]), right[k, 0] - left[k, 0], max(JUMP * whole, 10 * peak[1] * width[k]))
+            check_kink(float(at[k, 0]), right[k, 1] - left[k, 1], max(KINK * peak[1], 10 * bend[k] * width[k]))
         failing = at[~met], left[~met], real[~met], right[~met]
-        refuse_rows_of_pieces(sampled, *failing, peak, 2 * len(failing[0]) > len(rows) << depth)
+        check_rows_of_pieces(sampled, *failing, peak, 2 * len(failing[0]) > len(rows) << depth)
         if sampled.count > MOST_TIMES:
-            refuse_derivatives(*failing, peak)
+            check_derivatives(*failing, peak)
             raise ModelError(
                 f"function: the law with its derivatives does not settle near t = {failing[0][0, 0]:.6g} s, after "
                 f"{MOST_TIMES} times: it scatters, or what it does is too short; give a shorter span, or breaks="

@@ -33,10 +33,10 @@ from mbsd.model.laws.fitting.leaves import (
     Cut,
     Leaves,
     Tree,
+    check_jump,
+    check_kink,
     finest,
     merged,
-    refuse_jump,
-    refuse_kink,
 )
 from mbsd.model.laws.fitting.sampling import Sampled
 from mbsd.model.laws.numbers import Compiled, hermite_coefficients, pieces
@@ -198,8 +198,8 @@ def fit_pieces(fit: Fit, load: bool) -> tuple[Compiled, list[float], list[float]
         before[:], after[:] = _beside(fit, k, at)
         step, kink = after[0] - before[0], after[1] - before[1]
         if not load:
-            refuse_jump(cut.at, step, JUMP * spread + 1e-12 * size)
-            refuse_kink(cut.at, kink, KINK * rate)
+            check_jump(cut.at, step, JUMP * spread + 1e-12 * size)
+            check_kink(cut.at, kink, KINK * rate)
             before[:2] = after[:2] = (before[:2] + after[:2]) / 2
         elif abs(step) > STEP * size and cut.right - cut.left < AT_ONCE * (nodes[-1][-1] - nodes[0][0]):
             jumps.append(float(at))

@@ -1,4 +1,4 @@
-"""Values of a law on ever finer pieces, polynomials of degree 8 through nine even nodes, until they fit.
+"""Values of a law on ever finer pieces, polynomials of degree 8 through nine nodes, until they fit.
 
 A piece is met where its last two Chebyshev coefficients and its distance to the law at the times that are looked at
 as well (sampling.py) are small enough; else it is halved. What counts for a driver is f'':
@@ -219,7 +219,7 @@ class Tree:
             if met.any():
                 self.steepest = max(self.steepest, float(steepness[met].max()))
             if not self.load:
-                self._refuse_jumps(begin[~met], width[~met], values[~met])
+                self._check_jumps(begin[~met], width[~met], values[~met])
             narrow = width <= finest(*self.span)
             if self.sampled.count + DEGREE * (~met & ~narrow).sum() > self.most_calls:
                 self.overrun = True
@@ -278,15 +278,15 @@ class Tree:
         out[piece[np.abs(off) > enough[piece]]] = True
         return out
 
-    def _refuse_jumps(self, begin: np.ndarray, width: np.ndarray, values: np.ndarray) -> None:
+    def _check_jumps(self, begin: np.ndarray, width: np.ndarray, values: np.ndarray) -> None:
         """Raise ModelError where the law of a driver jumps or has a kink."""
         for k in np.flatnonzero(width < POINT * (self.span[1] - self.span[0])):
             early, late = values[k, 4] - values[k, 0], values[k, 8] - values[k, 4]
-            refuse_jump(float(begin[k]), early + late, max(JUMP * self.range, 10 * self.steepest * width[k]))
-            refuse_kink(float(begin[k]), 2 * (late - early) / width[k], KINK * self.steepest)
+            check_jump(float(begin[k]), early + late, max(JUMP * self.range, 10 * self.steepest * width[k]))
+            check_kink(float(begin[k]), 2 * (late - early) / width[k], KINK * self.steepest)
 
 
-def refuse_jump(at: float, jump: float, allowed: float) -> None:
+def check_jump(at: float, jump: float, allowed: float) -> None:
     """Raise ModelError for a jump of f that a driver cannot follow."""
     if abs(jump) > allowed:
         raise ModelError(
@@ -295,7 +295,7 @@ def refuse_jump(at: float, jump: float, allowed: float) -> None:
         )
 
 
-def refuse_kink(at: float, kink: float, allowed: float) -> None:
+def check_kink(at: float, kink: float, allowed: float) -> None:
     """Raise ModelError for a jump of f' that a driver cannot follow."""
     if abs(kink) > allowed:
         raise ModelError(

@@ -125,8 +125,9 @@ def followed(path: np.ndarray, seen: np.ndarray, closed: bool) -> np.ndarray:
     """
     step = float(np.hypot(*np.diff(path, axis=0).T).max())
     away = np.hypot(*(path - seen[0]).T)
-    near = away < away.min() + BESIDE * step
-    starts = [int(block[np.argmin(away[block])]) for block in _runs(np.flatnonzero(near))]
+    near = np.flatnonzero(away < away.min() + BESIDE * step)
+    branches = np.split(near, np.flatnonzero(np.diff(near) > 1) + 1)
+    starts = [int(block[np.argmin(away[block])]) for block in branches]
     tries = [_followed_from(start, path, seen, closed, step) for start in starts]
     count = len(path) - 1 if closed else len(path)
     off = [float(((path[numbers % count] - seen) ** 2).sum()) for numbers in tries]
@@ -142,11 +143,6 @@ def evenly(path: np.ndarray, count: int) -> np.ndarray:
     way = np.concatenate([[0.0], np.cumsum(steps)])
     apart = np.concatenate([[True], steps > 0.0])
     return CubicSpline(way[apart], path[apart])(np.linspace(0.0, way[-1], count))
-
-
-def _runs(numbers: np.ndarray) -> list[np.ndarray]:
-    """Split where neighbours are missing."""
-    return np.split(numbers, np.flatnonzero(np.diff(numbers) > 1) + 1)
 
 
 def _followed_from(start: int, path: np.ndarray, seen: np.ndarray, closed: bool, step: float) -> np.ndarray:

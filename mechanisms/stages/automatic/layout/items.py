@@ -60,12 +60,6 @@ class Reach:
         """By the choice that decides between them."""
         return {None: ((None if self.base else self.low, None if self.top else self.high),)}
 
-    def span(self, levels: Levels) -> tuple[int, int] | None:
-        """Return the lowest and highest half layer, as far as layers are decided: more decided ones only make it
-        longer.
-        """
-        return _span(self, levels)
-
 
 @dataclass(frozen=True)
 class PinReach:
@@ -78,10 +72,6 @@ class PinReach:
     def ends(self) -> dict[str | None, tuple[Ends, ...]]:
         """As :attr:`Reach.ends`."""
         return {self.choice: ((1, 1), (-1, -1))}
-
-    def span(self, levels: Levels) -> tuple[int, int] | None:
-        """Return what :meth:`Reach.span` does; while the choice is open, without an end."""
-        return _span(self, levels)
 
 
 @dataclass(frozen=True)
@@ -100,10 +90,6 @@ class PivotReach:
     def ends(self) -> dict[str | None, tuple[Ends, ...]]:
         """As :attr:`Reach.ends`."""
         return {self.choice: ((None, 0 if self.flush else 1), (-1, None))}
-
-    def span(self, levels: Levels) -> tuple[int, int] | None:
-        """Return what :meth:`Reach.span` does; while the choice is open, what both have in common."""
-        return _span(self, levels)
 
 
 type AnyReach = Reach | PinReach | PivotReach
@@ -140,7 +126,11 @@ def spans_meet(a: tuple[int, int] | None, b: tuple[int, int] | None) -> bool:
     return a is not None and b is not None and a[0] <= b[1] and b[0] <= a[1]
 
 
-def _span(reach: AnyReach, levels: Levels) -> tuple[int, int] | None:
+def span(reach: AnyReach, levels: Levels) -> tuple[int, int] | None:
+    """Return the lowest and highest half layer, as far as layers are decided: more decided ones only make it longer.
+
+    While a choice is open: what both have in common.
+    """
     ((choice, ends),) = reach.ends.items()
     chosen = levels.get(choice) if choice is not None else 0
     known = [2 * levels[body] for body in reach.bodies if body in levels]
@@ -184,11 +174,6 @@ class Heights:
     def top(self, body: str) -> float:
         """Return the upper face of a body's plate."""
         return self.bottom(body) + self.thickness
-
-    def gap_above(self, body: str) -> float:
-        """Return the height free above a body's plate, below the next layer; infinite above the highest."""
-        level = self.levels[body]
-        return self.bottoms[level + 1] - self.top(body) if level + 1 < len(self.bottoms) else float("inf")
 
 
 def heights(

@@ -386,7 +386,8 @@ def _within(problem: Problem, count: int, bridges: int, budget: int | Purse) -> 
     ):
         _lower(clauses, wish, purse)
     if few:
-        _settle(clauses, [*_highest_first(clauses.steps), *clauses.choices.values()])
+        highest_first = [step for steps in clauses.steps.values() for step in reversed(steps)]
+        _settle(clauses, [*highest_first, *clauses.choices.values()])
     chosen = {body: clauses.layer(body) for body in problem.bodies}
     chosen |= {choice: int(clauses.holds(literal)) for choice, literal in clauses.choices.items()}
     clauses.close()
@@ -415,11 +416,6 @@ def _settle(clauses: Clauses, literals: Sequence[int]) -> None:
             clauses.add(-literal)
         else:
             clauses.solved()
-
-
-def _highest_first(steps: Mapping[str, Sequence[int]]) -> list[int]:
-    """Return literals of steps, the highest step of each body first."""
-    return [step for own in steps.values() for step in reversed(own)]
 
 
 def blocking[Key: Hashable](problem: Problem, keys: Sequence[Key], purse: Purse | None = None) -> list[Key]:

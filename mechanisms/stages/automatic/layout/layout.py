@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Item, PinReach, Reach, spans_meet
+from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Item, PinReach, Reach, span, spans_meet
 from mechanisms.stages.automatic.layout.layers import Problem
 from mechanisms.stages.automatic.layout.planar import Rounded, around, core_gaps, least_gap, placed
 from mechanisms.stages.automatic.layout.sizes import rods_of
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from mbsd import Marker, Mechanism
     from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Anchor, Levels, Need
+    from mechanisms.stages.automatic.layout.items import Anchor, Heights, Levels, Need
     from mechanisms.stages.automatic.layout.sizes import Sizes
 
 
@@ -34,20 +34,23 @@ class Springs:
     """Names of the others, once features are gathered."""
 
 
-class Feature(Protocol):
-    """One joint, or several that are one thing such as links on a common pin."""
+class Feature:
+    """One joint, or several that are one thing such as links on a common pin. By itself it takes no room."""
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
         """Return where outlines of bodies must reach."""
-        ...
+        return ()
 
     def items(self, layout: Layout) -> Iterable[Item]:
         """Return the items that take room besides the bodies' own plates."""
-        ...
+        return ()
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """Return how high gaps must be, once the layers are known."""
-        ...
+        return ()
+
+    def build(self, plan: Any, heights: Heights) -> None:
+        """Give eyes to the bodies and solids to the ``plan`` (plan.Plan), where a feature has solids."""
 
 
 class Layered(Protocol):
@@ -269,13 +272,13 @@ class Layout:
         mine = {k for k, item in enumerate(self.items) if item.source is source}
         others = {j if i in mine else i for i, j in self.conflicts if (i in mine) != (j in mine)}
         looked = min(half_layer, half_layer + further), max(half_layer, half_layer + further)
-        return any(spans_meet(self.items[k].reach.span(levels), looked) for k in others)
+        return any(spans_meet(span(self.items[k].reach, levels), looked) for k in others)
 
     def room_below(self, x: float, y: float, levels: Levels) -> float:
         """Return the distance (rmm) from a place on ground to what moves above the base, under the lowest layer."""
         here, every = np.full((len(self.times), 1, 2), (x, y)), np.arange(len(self.times))
         moving = (i for i in self.items if i.body != "ground" and not i.only and i.what != i.body)
-        low = (i for i in moving if spans_meet(i.reach.span(levels), (BASE, BASE)))
+        low = (i for i in moving if spans_meet(span(i.reach, levels), (BASE, BASE)))
         gaps = (core_gaps(here, placed(i.shape.core_at(every), self.poses[i.body])) - i.shape.radius for i in low)
         return min((float(gap.min()) for gap in gaps), default=math.inf)
 

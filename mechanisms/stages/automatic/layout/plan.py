@@ -187,15 +187,19 @@ class Plan:
             self.main[body] = self.named(body)
 
     def named(self, wish: str) -> str:
-        """Return a name that no other solid has, of letters, digits and _; some disks take upper and lower case for
-        one.
-        """
-        name = re.sub(r"\W", "_", wish, flags=re.ASCII)
-        if not name[:1].isalpha():
-            name = f"part_{name}"
-        free, number = name, 1
-        while free.lower() in self.names:
-            number += 1
-            free = f"{name}_{number}"
-        self.names.add(free.lower())
-        return free
+        """Return a name that no other solid has."""
+        return free_name(wish, self.names)
+
+
+def free_name(wish: str, taken: set[str]) -> str:
+    """Return a name of letters, digits and _ that is not ``taken``, and enter it there in lower case: some disks take
+    upper and lower case for one.
+    """
+    name = re.sub(r"\W", "_", wish, flags=re.ASCII)
+    name = name if name[:1].isalpha() else f"part_{name}"
+    free, number = name, 1
+    while free.lower() in taken:
+        number += 1
+        free = f"{name}_{number}"
+    taken.add(free.lower())
+    return free

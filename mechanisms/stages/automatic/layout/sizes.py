@@ -186,34 +186,8 @@ def rods_of(m: Mechanism, left_out: Collection[str] = ()) -> dict[str, Joint]:
 PIN = 8.0
 """Diameter of a pin (rmm)."""
 STANDARD = (
-    0.5,
-    0.6,
-    0.8,
-    1,
-    1.2,
-    1.6,
-    2,
-    2.5,
-    3,
-    4,
-    5,
-    6,
-    8,
-    10,
-    12,
-    16,
-    20,
-    25,
-    30,
-    40,
-    50,
-    60,
-    80,
-    100,
-    120,
-    160,
-    200,
-)
+    0.5, 0.6, 0.8, 1, 1.2, 1.6, 2, 2.5, 3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 30, 40, 50, 60, 80, 100, 120, 160, 200,
+)  # fmt: skip
 """Diameters of pins that there are (mm), after ISO 2338; a larger one is a whole number of 50 mm."""
 THICKEST_SCREW = 4.0
 """Largest screw of a pedestal's flange (rmm)."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import Anchor, Need
+from mechanisms.stages.automatic.layout.items import Anchor
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.plan import build
 from mechanisms.stages.automatic.layout.planar import Rounded, core_gaps, placed
@@ -24,7 +24,7 @@ from shared.shapes.solid import placed as placed_solid
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.items import Heights, Item, Levels
+    from mechanisms.stages.automatic.layout.items import Heights
     from mechanisms.stages.automatic.layout.layout import Layout
     from mechanisms.stages.automatic.layout.plan import Plan
 
@@ -94,7 +94,7 @@ LEAST = 26.0
 
 
 @dataclass(frozen=True, eq=False)
-class Bridge:
+class Bridge(Feature):
     """A beam between two posts (rmm), and the pins that hang from it."""
 
     ends: tuple[tuple[float, float], tuple[float, float]]
@@ -113,14 +113,6 @@ class Bridge:
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
         """Return its posts."""
         return [Anchor("ground", x, y, POST / 2) for x, y in self.ends]
-
-    def items(self, layout: Layout) -> Iterable[Item]:
-        """Return an empty list: its place is chosen where nothing is in its way."""
-        return []
-
-    def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Return an empty list."""
-        return []
 
 
 def may_hang(layout: Layout) -> frozenset[str]:

@@ -55,7 +55,7 @@ class Face(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class RimMark:
+class RimMark(Feature):
     """A traced point (rmm), and the place and radius of the pin in the rim; ``raised``: with its pointer."""
 
     name: str
@@ -175,7 +175,7 @@ DENSITY = MATERIALS["aluminium"].density
 
 
 @dataclass(frozen=True, eq=False)
-class FreeBody:
+class FreeBody(Feature):
     """A ball or disc of this radius about a body's centre of mass (rmm)."""
 
     body: str
@@ -267,7 +267,7 @@ WEIGHT = 4.0
 
 
 @dataclass(frozen=True, eq=False)
-class Stylus:
+class Stylus(Feature):
     """A traced point: a brass tip where all above can pass, else a brass pin flush with the plate."""
 
     name: str
@@ -286,10 +286,6 @@ class Stylus:
             return []
         shape = disc(self.x, self.y, layout.sizes.stylus_eye - 1.0)
         return [Item(f"the stylus of {self.name}", self.body, shape, Reach((self.body,), 1, top=True), source=self)]
-
-    def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Return an empty list."""
-        return []
 
     def build(self, plan: Plan, heights: Heights) -> None:
         """Build the stylus in an eye."""
@@ -310,7 +306,7 @@ class Stylus:
 
 
 @dataclass(frozen=True, eq=False)
-class Weight:
+class Weight(Feature):
     """A brass weight at the free end of a bar, or at the centre of mass of a body with one joint."""
 
     body: str
@@ -382,7 +378,7 @@ def weights(layout: Layout, heavy: bool) -> list[Feature]:
     for name in layout.bodies:
         body = layout.m.bodies[name]
         here = [a for a in taken if a.body == name]
-        centre = (layout.sizes.of_metres(body.com[0]), layout.sizes.of_metres(body.com[1]))
+        centre = _place(layout, name)
         if body.length is not None:
             ends = [(0.0, 0.0), (layout.sizes.of_metres(body.length), 0.0)]
         elif len(here) < 2 and name not in free and name not in round_bodies:

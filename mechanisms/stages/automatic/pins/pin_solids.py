@@ -17,6 +17,7 @@ from shared.shapes.standards import screw_length, screw_name
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.items import Heights, Levels
     from mechanisms.stages.automatic.layout.plan import Plan
+    from mechanisms.stages.automatic.layout.sizes import Sizes
 
 
 # The solids of a pin: what holds it, what runs on it, and what keeps it in place (rmm).
@@ -35,9 +36,8 @@ def moving_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> No
     holder, runners = stack[0], stack[1:]
     x, y = joint.places[holder]
     low = heights.top(holder)
-    boss = heights.bottom(runners[0]) - pivot.flange_room - fit.axial - pivot.washer_room - low
-    boss = 0.0 if boss < 0.05 else boss
-    plan.eye(holder, x, y, Eye(sizes.eye - 0.5, pivot.held, above=boss, boss=min(9.5, sizes.hardware)))
+    boss = boss_height(heights.bottom(runners[0]) - pivot.flange_room - fit.axial - pivot.washer_room - low)
+    plan.eye(holder, x, y, holding_eye(sizes, above=boss))
     plan.add(holder, pivot.washer_at(f"washer_{joint.name}", x, y, low + boss + fit.seat))
     run(joint, runners, holder, plan, heights)
     start = heights.bottom(holder) + 0.3
@@ -55,9 +55,8 @@ def hanging_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> N
     holder, runners = stack[-1], stack[:-1]
     x, y = joint.places[holder]
     high = heights.bottom(holder)
-    boss = high - pivot.washer_room - fit.axial - pivot.flange_room - heights.top(runners[-1])
-    boss = 0.0 if boss < 0.05 else boss
-    plan.eye(holder, x, y, Eye(sizes.eye - 0.5, pivot.held, below=boss, boss=min(9.5, sizes.hardware)))
+    boss = boss_height(high - pivot.washer_room - fit.axial - pivot.flange_room - heights.top(runners[-1]))
+    plan.eye(holder, x, y, holding_eye(sizes, below=boss))
     plan.add(holder, pivot.washer_at(f"washer_{name}_high", x, y, high - boss - pivot.washer_room))
     run(joint, runners, holder, plan, heights)
     clip = heights.bottom(runners[0]) - pivot.flange_room - pivot.retainer_room
@@ -214,10 +213,10 @@ def crank_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> Non
     x, y = joint.places[low]
     top, under = heights.top(low), heights.bottom(high)
     room = pivot.flange_room + fit.axial + pivot.washer_room
-    above, below = (_boss(gap - room) for gap in (heights.bottom(runners[0]) - top, under - heights.top(runners[-1])))
-    radius = min(9.5, sizes.hardware)
-    plan.eye(low, x, y, Eye(sizes.eye - 0.5, pivot.held, above=above, boss=radius))
-    plan.eye(high, x, y, Eye(sizes.eye - 0.5, pivot.held, below=below, boss=radius))
+    gaps = heights.bottom(runners[0]) - top, under - heights.top(runners[-1])
+    above, below = (boss_height(gap - room) for gap in gaps)
+    plan.eye(low, x, y, holding_eye(sizes, above=above))
+    plan.eye(high, x, y, holding_eye(sizes, below=below))
     run(joint, runners, low, plan, heights)
     start, end = heights.bottom(low) + UNDER, heights.top(high) - UNDER
     plan.make(low, f"pin_{name}", placed(pin(pivot.pin, end - start), x, y, start), "steel", 0)
@@ -228,8 +227,14 @@ def crank_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> Non
     )
 
 
-def _boss(height: float) -> float:
-    return height if height > 0.05 else 0.0
+def boss_height(room: float) -> float:
+    """Return how high a boss is that fills so much room: none where it would be thinner than 0.05 rmm."""
+    return room if room > 0.05 else 0.0
+
+
+def holding_eye(sizes: Sizes, above: float = 0.0, below: float = 0.0) -> Eye:
+    """Return the eye that holds a pin, with bosses of these heights."""
+    return Eye(sizes.eye - 0.5, sizes.pivot.held, above=above, below=below, boss=min(9.5, sizes.hardware))
 
 
 # Solids of a pin, by the element that holds it.

@@ -76,7 +76,7 @@ SAME = 0.02
 
 
 @dataclass(frozen=True, eq=False)
-class Pin:
+class Pin(Feature):
     """One axis: the place on each body that turns about it (rmm)."""
 
     name: str

@@ -46,7 +46,7 @@ HOOK = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class Stretching:
+class Stretching(Feature):
     """One spring, damper or actuator: its ends (body, x, y in its frame) and their ways in the world, in rmm."""
 
     force: str
@@ -73,10 +73,6 @@ class Stretching:
     def z(self, heights: Heights) -> float:
         """Return the height (rmm) of its axis: the middle of its layer."""
         return heights.bottom(self.layer) + heights.thickness / 2
-
-    def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """Return an empty list: the studs have them."""
-        return []
 
     def items(self, layout: Layout) -> Iterable[Item]:
         """Yield its barrel in its layer and both gaps beside it, and its whole length in its layer."""
@@ -116,9 +112,6 @@ class Stretching:
         """Return how far it reaches beyond its layer, up and down (rmm)."""
         return self.outer - layout.sizes.thickness / 2
 
-    def build(self, plan: Plan, heights: Heights) -> None:
-        """Nothing: the film draws it."""
-
 
 def _core(spring: Stretching) -> str:
     return f"{spring.names[0]} in its layer"
@@ -132,7 +125,7 @@ def _corners(ends: np.ndarray, corner: np.ndarray) -> np.ndarray:
 
 
 @dataclass(frozen=True, eq=False)
-class Stud:
+class Stud(Feature):
     """One place of a body (rmm) and the ends (0 or 1) that it holds; ``pin`` where a joint's pin is there."""
 
     body: str

@@ -46,7 +46,7 @@ type Place = tuple[float, float]
 
 
 @dataclass(frozen=True, eq=False)
-class Stop:
+class Stop(Feature):
     """The stop pins of one joint (rmm, in the frames of their bodies)."""
 
     name: str

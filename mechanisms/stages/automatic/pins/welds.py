@@ -45,7 +45,7 @@ BLOCK, ROUND = 6.5, 9.5
 
 
 @dataclass(frozen=True, eq=False)
-class Weld:
+class Weld(Feature):
     """Place and direction (rmm, rad) of the joint on two bodies; one may be ground."""
 
     name: str
@@ -130,7 +130,8 @@ def with_free_bolts(features: Sequence[Feature], layout: Layout) -> list[Feature
     """
     kept = [feature for feature in features if not isinstance(feature, Weld)]
     for weld in (feature for feature in features if isinstance(feature, Weld)):
-        taken = {body: _taken(body, kept, layout) for body, *_ in weld.ends}
+        places = [anchor for feature in kept for anchor in feature.anchors(layout)]  # what is welded is another body
+        taken = {body: [anchor for anchor in places if anchor.body == body] for body, *_ in weld.ends}
         free = next((moved for moved in _moved(weld) if _is_free(moved, taken, layout)), None)
         if free is None:
             m, (first, second) = layout.m, (body for body, *_ in weld.ends)
@@ -155,11 +156,6 @@ def _moved(weld: Weld) -> Iterable[Weld]:
                     for body, x, y, angle in weld.ends
                 ]
                 yield replace(weld, ends=(ends[0], ends[1])) if way or turn else weld
-
-
-def _taken(body: str, features: Sequence[Feature], layout: Layout) -> list[Anchor]:
-    """Return places of a body with something on them; what is welded to it is another body's."""
-    return [anchor for feature in features for anchor in feature.anchors(layout) if anchor.body == body]
 
 
 def _is_free(weld: Weld, taken: Mapping[str, Sequence[Anchor]], layout: Layout) -> bool:

@@ -14,7 +14,8 @@ from mechanisms.stages.automatic.cams import pushing_cam, pushing_extent, with_r
 from mechanisms.stages.automatic.layout.curves import curve_path, farthest, on_body, profile_path, turns_left
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.plan import contact_kind, force_kind, kind
-from mechanisms.stages.automatic.layout.sizes import Extent, extent
+from mechanisms.stages.automatic.layout.sizes import CLEAR, Extent, extent
+from mechanisms.stages.automatic.pins.pins import SAME, Pin
 from mechanisms.stages.automatic.rolling.roads import THICK, Road, along
 from mechanisms.stages.automatic.rolling.rounds import Look, Round, round_at
 from mechanisms.stages.automatic.rolling.tracks import circle, rolled_road, touched_path, touched_road, track
@@ -43,7 +44,8 @@ SHARPEST = math.radians(20.0)
 PARALLEL = 1e-3
 """Walls at a smaller angle (rad) do not meet."""
 NOSE = 4.0
-"""The least radius of what touches (rmm); the wall of a smaller one lies back by the difference."""
+"""The least radius of what touches (rmm), without a pin in its middle; the wall of a smaller one lies back by the
+difference."""
 
 
 @dataclass(eq=False)
@@ -259,7 +261,7 @@ def _round(m: Mechanism, touch: Touch, layout: Layout, gap: float) -> tuple[Roun
         layout.yielding.add(pair)
     if pair in layout.touching | layout.yielding:
         pressed = 0.0
-    radius = max(layout.sizes.of_metres(touch.params["radius"]), NOSE)
+    radius = layout.sizes.of_metres(touch.params["radius"]) + _set_back(touch, layout)
     part, new = round_at(layout, touch.name, body, layout.place(touch.j), radius, look, pressed)
     part.pressed = max(part.pressed, seen)
     return part, new
@@ -284,7 +286,15 @@ def _feet(m: Mechanism, body: str) -> int:
 
 def _set_back(touch: Touch, layout: Layout) -> float:
     """Return how far the surface lies behind that of the model (rmm), because what touches is larger than there."""
-    return max(0.0, NOSE - layout.sizes.of_metres(touch.params["radius"]))
+    return max(0.0, _least_radius(touch, layout) - layout.sizes.of_metres(touch.params["radius"]))
+
+
+def _least_radius(touch: Touch, layout: Layout) -> float:
+    """Return the least radius of what touches (rmm): that of a nose, or one that holds the eye of a pin there."""
+    body, place, sizes = touch.j.body.name, layout.place(touch.j), layout.sizes
+    pins = [feature for feature in layout.features if isinstance(feature, Pin) and body in feature.places]
+    is_pinned = any(math.dist(pin.places[body], place) < SAME for pin in pins)
+    return sizes.eye + CLEAR * sizes.pivot.fit.running + YIELDS if is_pinned else NOSE
 
 
 def _places(touch: Touch, layout: Layout) -> np.ndarray:

@@ -12,7 +12,7 @@ import numpy as np
 from manifold3d import CrossSection, FillRule, OpType
 
 from mechanisms.stages.automatic.layout.curves import area
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.items import Item, Reach
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.plan import Foot
 from mechanisms.stages.automatic.layout.planar import around, convex_hull
@@ -21,7 +21,7 @@ from shared.shapes.outline import distances, simplified
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
+    from mechanisms.stages.automatic.layout.items import Heights
     from mechanisms.stages.automatic.layout.layout import Layout
     from mechanisms.stages.automatic.layout.plan import Plan
     from mechanisms.stages.automatic.rolling.rounds import Round
@@ -133,7 +133,7 @@ HELD = 0.7
 
 
 @dataclass(frozen=True, eq=False)
-class Road:
+class Road(Feature):
     """A wall on the base (rmm, ground's axes)."""
 
     name: str
@@ -153,10 +153,6 @@ class Road:
         if self.band is not None:
             return False
         return bool(np.abs((self.feet - self.path[[-1, 0]]) @ way).max() < 1e-9 * float(way @ way))
-
-    def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """Return an empty list."""
-        return []
 
     def items(self, layout: Layout) -> Iterable[Item]:
         """Yield the wall up to the height of what it carries."""
@@ -178,10 +174,6 @@ class Road:
             if len(self.path) == 2:
                 behind = [self.feet[1], self.feet[0]]
             yield np.array([a, b, *behind])
-
-    def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Return an empty list."""
-        return []
 
     def build(self, plan: Plan, heights: Heights) -> None:
         """Build the wall; the base plate goes on beside it, under what it carries."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal, cast
 
 from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.plan import build
 from mechanisms.stages.automatic.layout.planar import disc
 from mechanisms.stages.automatic.layout.sizes import CLEAR
@@ -46,7 +47,7 @@ OVER = 0.4
 
 
 @dataclass(eq=False)
-class Round:
+class Round(Feature):
     """A circle about a place of a body (rmm). ``radius`` is that of the model, ``short`` what is left off."""
 
     name: str

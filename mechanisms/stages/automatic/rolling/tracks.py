@@ -19,7 +19,8 @@ from mechanisms.stages.automatic.layout.curves import (
     on_body,
     turns_left,
 )
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.items import Anchor, Item, Reach
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.plan import Foot
 from mechanisms.stages.automatic.layout.planar import Rounded, around, convex_hull, disc
 from mechanisms.stages.automatic.pins.pins import Pin
@@ -45,7 +46,7 @@ from shared.stage.paths import shown_file
 if TYPE_CHECKING:
     from mbsd.model.force import Force
     from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
+    from mechanisms.stages.automatic.layout.items import Heights
     from mechanisms.stages.automatic.layout.layout import Layout
     from mechanisms.stages.automatic.layout.plan import Plan
     from mechanisms.stages.automatic.rolling.rounds import Round
@@ -64,7 +65,7 @@ EDGE = 2.0
 
 
 @dataclass(frozen=True, eq=False)
-class Track:
+class Track(Feature):
     """A wall of a body (rmm, its frame)."""
 
     name: str
@@ -127,10 +128,6 @@ class Track:
             middle = few - THICK / 2 * closed_normals(few)
             for a, b in pairwise([*middle, middle[0]]):
                 yield Rounded(np.array([a, b]), THICK / 2 + 0.2)
-
-    def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Return an empty list."""
-        return []
 
     def build(self, plan: Plan, heights: Heights) -> None:
         """Build the wall."""

@@ -13,7 +13,7 @@ import numpy as np
 from mechanisms.stages.automatic.layout.items import Item, Reach
 from mechanisms.stages.automatic.layout.layers import Problem, Undecided, find_layers
 from mechanisms.stages.automatic.layout.planar import Rounded, around, disc, least_gap
-from mechanisms.stages.automatic.shafts.bodies import NEAR, SAME, carries
+from mechanisms.stages.automatic.shafts.bodies import NEAR, SAME, carries, marker_on, place
 from mechanisms.stages.automatic.shafts.passing import Takes
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
@@ -56,7 +56,7 @@ def axles(machine: Machine) -> list[Axle]:
                 continue
             if eye.on in machine.links and carries(machine, link, machine.links[eye.on]):
                 continue  # between the flanges of its carrier
-            other = _place_of(machine, eye.joint, eye.on)
+            other = place(marker_on(machine.m.joints[eye.joint], eye.on))
             ends = {body: (eye.x, eye.y), eye.on: other}
             near = [group for group in groups if _share(group[1], ends)]
             joined = {k: v for _, group in near for k, v in group.items()} | ends
@@ -77,12 +77,6 @@ def axles(machine: Machine) -> list[Axle]:
     return made
 
 
-def _place_of(machine: Machine, joint: str, body: str) -> tuple[float, float]:
-    from mechanisms.stages.automatic.shafts.bodies import marker_on, place
-
-    return place(marker_on(machine.m.joints[joint], body))
-
-
 def _share(a: Mapping[str, tuple[float, float]], b: Mapping[str, tuple[float, float]]) -> bool:
     return any(abs(a[k][0] - b[k][0]) < NEAR and abs(a[k][1] - b[k][1]) < NEAR for k in a.keys() & b.keys())
 
@@ -91,14 +85,10 @@ def axle_takes(own: Axle, machine: Machine, thickness: Mapping[str, float], size
     """Return its pin with head, spacers and column; ``low`` is the top of the base plate."""
     unit, on = sizes.scale, frozenset(own.places)
     first, last = machine.links[own.stack[0]], machine.links[own.stack[-1]]
-    top = last.z + thickness[last.body] / 2 + _head(sizes) + 0.5 * unit
+    top = last.z + thickness[last.body] / 2 + sizes.head.height * unit + 0.5 * unit
     start = low if own.holder == "ground" else first.z - thickness[first.body] / 2
     shape = pin_outline(own, sizes)
     return [Takes(f"the pin of '{own.joint}'", own.holder, shape, start, top, on)]
-
-
-def _head(sizes: Sizes) -> float:
-    return sizes.head.height * sizes.scale
 
 
 def bore_of(own: Axle, body: str, sizes: Sizes) -> float:
@@ -138,7 +128,7 @@ def free_places(
     pitch = thick + (measures.sizes.head.height + MARGIN) * measures.unit
     given = {name: link.z for name, link in machine.links.items() if name not in free}
     layers = _layers(sorted(given.values()), pitch, len(free))
-    fixed = {name: _nearest(layers, z) for name, z in given.items()}
+    fixed = {name: min(range(len(layers)), key=lambda k, z=z: abs(layers[k] - z)) for name, z in given.items()}
     slots = {f"layer {k}": k for k in range(len(layers))}
     items = [Item(f"'{name}'", name, measures.outline(link), Reach((name,))) for name, link in machine.links.items()]
     for axle in pins:
@@ -175,10 +165,6 @@ def _layers(given: Sequence[float], pitch: float, count: int) -> list[float]:
         more = max(int((high - low) / pitch + 1e-6) - 1, 0)
         layers += [low, *(low + (high - low) * k / (more + 1) for k in range(1, more + 1))]
     return layers
-
-
-def _nearest(layers: Sequence[float], z: float) -> int:
-    return min(range(len(layers)), key=lambda k: abs(layers[k] - z))
 
 
 def _height(layers: Sequence[float], level: int, pitch: float) -> float:
@@ -239,12 +225,12 @@ class Bearers:
         """Return pillars from ``low`` up, and bearings."""
         x, y = self.plan.shaft.at
         body, top = frozenset({self.plan.shaft.body}), self.top
-        spaces = [Takes("a pillar", "ground", disc(*place, self.radius), low, top) for place in self.places]
+        spaces = [Takes("a pillar", "ground", disc(*pillar, self.radius), low, top) for pillar in self.places]
         for journal in self.journals:
             a, b = heights_of(self.plan, journal)
             spaces.append(Takes("a bearing", "ground", disc(x, y, self.hub), a, b, body))
-            for place in self.places:
-                arm = _arm(self.plan, place, self.radius, self.tapered)
+            for pillar in self.places:
+                arm = _arm(self.plan, pillar, self.radius, self.tapered)
                 spaces.append(Takes("the arm of a bearing", "ground", arm, a, b, body))
         return spaces
 

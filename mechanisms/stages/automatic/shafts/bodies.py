@@ -94,7 +94,6 @@ class Piston:
     """From the line of its middle to the wrist pin, to the left of ``along``."""
     link: str | None
     """Name of the link that drives it."""
-    wrist_joint: str
     area: float | None
     """Area of the bore (mm^2), where gas acts on it."""
 

@@ -6,17 +6,18 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from mechanisms.stages.automatic.shafts.cylinders import HEAD, SMALL_END, SQUISH, WRIST_PIN
+import cadquery as cq
+
+from mechanisms.stages.automatic.body_shapes import first_made
+from mechanisms.stages.automatic.shafts.cylinders import HEAD, SMALL_END, WRIST_PIN
 from mechanisms.stages.automatic.shafts.passing import DECK, deck_half, deck_range, deck_top
-from mechanisms.stages.automatic.shafts.valves import COIL, port_shape, spring_seats
+from mechanisms.stages.automatic.shafts.valves import COIL, along_x, port_shape, spring_seats
 from shared.shapes.build import built_once, eased, extruded, turned
-from shared.shapes.kernel import first_sound, through_holes
+from shared.shapes.kernel import through_holes
 from shared.shapes.outline import circle
 from shared.shapes.solid import Hold, Solid, placed
 
 if TYPE_CHECKING:
-    import cadquery as cq
-
     from mechanisms.stages.automatic.shafts.cylinders import Cylinder
     from mechanisms.stages.automatic.shafts.valves import ValvePlan
 
@@ -40,11 +41,6 @@ OPENING = math.radians(78)
 """Half of the angle that is cut out of a liner."""
 FINS, FIN = 7, 0.025
 """How many, and their thickness."""
-
-
-def along_x(shape: cq.Workplane) -> cq.Workplane:
-    """Return a shape turned about z as one turned about x."""
-    return shape.rotate((0, 0, 0), (0, 1, 0), 90)
 
 
 class PistonSize(NamedTuple):
@@ -75,8 +71,6 @@ def rounded(size: float) -> float:
 @built_once
 def piston_shape(own: PistonSize, thickness: float, gap: float) -> cq.Workplane:
     """Return the piston, from its wrist pin along x; ``thickness`` of the rod in it, ``gap`` beside that."""
-    import cadquery as cq
-
     b, r = own.bore, own.bore / 2 - own.running
     top, low, c = own.crown, -own.skirt, 0.012 * own.bore
     profile = [(0.0, low), (r - c, low), (r, low + c)]
@@ -133,8 +127,6 @@ def liner_shape(own: LinerSize, fin: float, window: float) -> cq.Workplane:
     """Return the liner from its lower end (x = own.low) up; ``fin`` is the radius of its fins, ``window`` the direction
     about x, from y towards z (rad), to which it is open.
     """
-    import cadquery as cq
-
     b, inner, outer = own.bore, own.bore / 2, own.outer
     low, high = own.low, own.top
     profile: list[tuple[float, float]] = [(inner, low), (outer, low)]
@@ -176,11 +168,6 @@ def head_shape(own: Cylinder, radius: float, valves: Sequence[ValvePlan] = ()) -
     return along_x(turned(profile))
 
 
-def squish(own: Cylinder) -> float:
-    """Return the gap (mm) from the piston to the head at its top dead centre."""
-    return SQUISH * own.bore
-
-
 # Holders of liners on ground: a deck for each bank, and the heads (mm).
 
 SIDE = math.radians(38)
@@ -218,18 +205,13 @@ def bank_solids(
 
 
 def _deck(bank: Sequence[Cylinder], low: float) -> cq.Workplane:
-    import cadquery as cq
-
     below, above = deck_range(bank)
     wide, last = deck_half(bank), bank[-1]
     top = deck_top(last)
     box = cq.Workplane().box(above - below, 2 * wide, top - low, centered=(False, True, False))
     box = box.translate((below, 0, low))
-    edge = 0.06 * last.bore
-    made = first_sound([lambda: box.edges("|X and >Z").fillet(edge)])
-    shape = box if made is None else made
-    made = first_sound([lambda: eased(shape, 0.012 * last.bore, "|X", True)])
-    shape = shape if made is None else made
+    round_box = first_made([lambda: box.edges("|X and >Z").fillet(0.06 * last.bore), lambda: box])
+    shape = first_made([lambda: eased(round_box, 0.012 * last.bore, "|X", True), lambda: round_box])
     for own in bank:
         hole = along_x(extruded(circle(0, 0, own.outer + SEAT), above - below + 2, below - 1))
         shape = shape.cut(hole.translate((0, 0, own.piston.z)))

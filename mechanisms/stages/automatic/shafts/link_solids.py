@@ -9,6 +9,7 @@ from functools import lru_cache, partial
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+import cadquery as cq
 import numpy as np
 
 from mechanisms.stages.automatic.body_shapes import body_shape, first_made
@@ -18,15 +19,13 @@ from mechanisms.stages.automatic.shafts.bodies import HUB, KNUCKLE_EYE, KNUCKLE_
 from mechanisms.stages.automatic.shafts.cylinders import BIG_END, SHANK
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded
-from shared.shapes.kernel import first_sound, rough_box, through_holes
+from shared.shapes.kernel import rough_box, through_holes
 from shared.shapes.link import Eye, link
 from shared.shapes.pin import Head, pin, washer
 from shared.shapes.solid import Solid, placed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-
-    import cadquery as cq
 
     from mechanisms.stages.automatic.layout.sizes import Sizes
     from mechanisms.stages.automatic.shafts.bearings import Axle, Bearers
@@ -92,8 +91,6 @@ def split(
     shape: cq.Workplane, at: tuple[float, float], towards: float, reach: float
 ) -> tuple[cq.Workplane, cq.Workplane]:
     """Return the parts of a shape ahead of and behind a line through ``at``; ``towards`` (rad) is ahead."""
-    import cadquery as cq
-
     low, high = rough_box(shape)
     along = float(low[2] + high[2]) / 2  # a plate may be far along its shaft
 
@@ -183,8 +180,7 @@ def _flange(main: Point, pins: Sequence[Point], height: float, bore: float, edge
         arms = arms.union(extruded(outline.hull([(x, y, hub), (u, v, own)]), height))
     ways.append(lambda: arms)
     rounded = [partial(_eased, way, edge * bore) for way in ways]
-    made = first_sound([shape for pair in zip(rounded, ways, strict=True) for shape in pair])
-    return arms if made is None else made
+    return first_made([shape for pair in zip(rounded, ways, strict=True) for shape in pair])
 
 
 def _round(circles: Sequence[outline.Circle], waist: float, height: float, ring: cq.Workplane) -> cq.Workplane:
@@ -286,8 +282,7 @@ def _bearing(own: Bearers, journal: Journal) -> cq.Workplane:
     thick = ARM * (high - low)
     middle = (low + high) / 2
     ring = extruded(outline.circle(x, y, own.hub), high - low, low)
-    made = first_sound([partial(eased, ring, 0.03 * plan.unit, "|Z", True)])
-    shape = ring if made is None else made
+    shape = first_made([partial(eased, ring, 0.03 * plan.unit, "|Z", True), lambda: ring])
     for u, v in own.places:
         arm = outline.hull([(x, y, 0.8 * own.hub), (u, v, BOSS * own.radius)])
         shape = shape.union(extruded(arm, thick, middle - thick / 2))

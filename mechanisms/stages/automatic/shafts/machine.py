@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
     from mbsd import Mechanism
+    from mbsd.model.body import Marker
     from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.shafts.bodies import Point
 
@@ -66,17 +67,12 @@ def piston(machine: Machine, body: str, joint: Joint, joints: list[Joint]) -> Pi
             "the rod of a piston is in its middle: give both the same z"
         )
     ground, mine = marker_on(joint, "ground"), marker_on(joint, body)
-    theta = float(machine.poses[body][0, 2])
-    along = np.array([math.cos(ground.angle), math.sin(ground.angle)])
     wrist = place(marker_on(wrists[0], body)) if wrists else place(mine)
     link = other_on(wrists[0], body).body.name if wrists else None
-    line = np.array(place(ground))
-    origin = _driven_from(machine, link, line)
-    if float(((machine.path(body, *wrist) - origin) @ along).mean()) < 0:
-        along = -along
-    left = np.array([-along[1], along[0]])
-    aside = float((machine.path(body, *wrist)[0] - line) @ left)
-    turn = math.atan2(along[1], along[0]) - theta
+    line, path = np.array(place(ground)), machine.path(body, *wrist)
+    along, left = _guide(ground, [path], _driven_from(machine, link, line))
+    aside = float((path[0] - line) @ left)
+    turn = math.atan2(along[1], along[0]) - float(machine.poses[body][0, 2])
     return Piston(
         body,
         joint.name,
@@ -87,7 +83,6 @@ def piston(machine: Machine, body: str, joint: Joint, joints: list[Joint]) -> Pi
         wrist,
         aside,
         link,
-        wrists[0].name if wrists else "",
         _area(m, body),
     )
 
@@ -104,15 +99,12 @@ def ram(machine: Machine, body: str, joint: Joint, wrists: Sequence[Joint]) -> R
                 f"{shown_file(m.name, 'parts')}"
             )
     ground = marker_on(joint, "ground")
-    along = np.array([math.cos(ground.angle), math.sin(ground.angle)])
     line = np.array(place(ground))
     paths = [machine.path(body, *place(marker_on(wrist, body))) for wrist in wrists]
     links = [machine.links[other_on(wrist, body).body.name] for wrist in wrists]
     ends = [machine.path(link.body, eye.x, eye.y) for link in links for eye in link.eyes if eye.on not in ("", body)]
     behind = np.mean([end.mean(axis=0) for end in ends], axis=0) if ends else line
-    if sum(float(((path - behind) @ along).mean()) for path in paths) < 0:
-        along = -along
-    left = np.array([-along[1], along[0]])
+    along, left = _guide(ground, paths, behind)
     turn = math.atan2(along[1], along[0]) - float(machine.poses[body][0, 2])
     first = min(range(len(wrists)), key=lambda k: links[k].z)
     s0 = float((paths[first][0] - line) @ along)
@@ -170,6 +162,16 @@ def valve(machine: Machine, body: str, joint: Joint, cam: Joint) -> Valve:
         (float(path[least, 0]), float(path[least, 1])),
         float(np.ptp(pushed)),
     )
+
+
+def _guide(ground: Marker, paths: Sequence[np.ndarray], behind: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return unit vectors along a guide, the way in which places with ``paths`` (T, 2) lie ahead of one ``behind``, and
+    to the left of that.
+    """
+    along = np.array([math.cos(ground.angle), math.sin(ground.angle)])
+    if sum(float(((path - behind) @ along).mean()) for path in paths) < 0:
+        along = -along
+    return along, np.array([-along[1], along[0]])
 
 
 def _driven_from(machine: Machine, link: str | None, line: np.ndarray) -> np.ndarray:

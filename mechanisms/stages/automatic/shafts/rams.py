@@ -7,8 +7,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+import cadquery as cq
+
 from mechanisms.stages.automatic.layout.planar import Rounded, around
 from mechanisms.stages.automatic.shafts.passing import Takes, box
+from mechanisms.stages.automatic.shafts.valves import along_x
 from shared.shapes.build import extruded
 from shared.shapes.kernel import through_holes
 from shared.shapes.outline import circle
@@ -17,8 +20,6 @@ from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-
-    import cadquery as cq
 
     from mechanisms.stages.automatic.shafts.bodies import Machine, Ram, RamPin
     from mechanisms.stages.automatic.shafts.shaft_plan import Measures
@@ -209,15 +210,12 @@ def _merged(own: RamPlan) -> list[tuple[float, float, float, float]]:
 
 
 def _box(x0: float, x1: float, y: float, half: float, z0: float, z1: float) -> cq.Workplane:
-    import cadquery as cq
-
     box = cq.Workplane().box(x1 - x0, 2 * half, z1 - z0, centered=(False, True, False))
     return box.translate((x0, y, z0))
 
 
 def _column(own: RamPlan, begin: float, end: float, z: float, radius: float) -> cq.Workplane:
-    along = extruded(circle(0, 0, radius), end - begin, begin).rotate((0, 0, 0), (0, 1, 0), 90)
-    return along.translate((0, own.middle, z))
+    return along_x(extruded(circle(0, 0, radius), end - begin, begin)).translate((0, own.middle, z))
 
 
 def _on_body(own: RamPlan, shape: cq.Workplane) -> cq.Workplane:

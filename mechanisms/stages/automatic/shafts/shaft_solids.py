@@ -9,18 +9,17 @@ from functools import partial
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+import cadquery as cq
 import numpy as np
 
+from mechanisms.stages.automatic.body_shapes import first_made
 from mechanisms.stages.automatic.shafts.shaft_plan import THIN
 from shared.contract.materials import MATERIALS
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded, turned
-from shared.shapes.kernel import first_sound
 from shared.shapes.units import cubic_metres, mm
 
 if TYPE_CHECKING:
-    import cadquery as cq
-
     from mechanisms.stages.automatic.shafts.bodies import Link, LinkEye, Machine, Shaft
     from mechanisms.stages.automatic.shafts.shaft_plan import Pin, ShaftPlan, Web
     from shared.shapes.outline import Circle
@@ -119,8 +118,7 @@ def web_solid(plan: ShaftPlan, web: Web, weight: Weight | None = None) -> cq.Wor
     shape = _hulls(circles, height, web.low)
     if weight is not None:
         shape = shape.union(_counterweight(plan.neck, weight, height, web.low))
-    made = first_sound([partial(eased, shape.clean(), size, "|Z", True) for size in (edge, edge / 2)])
-    return shape if made is None else made
+    return first_made([*(partial(eased, shape.clean(), size, "|Z", True) for size in (edge, edge / 2)), lambda: shape])
 
 
 def _hulls(circles: Sequence[Circle], height: float, z: float) -> cq.Workplane:
@@ -140,8 +138,6 @@ def _hull(a: Circle, b: Circle) -> cq.Wire:
 
 
 def _counterweight(neck: float, weight: Weight, height: float, z: float) -> cq.Workplane:
-    import cadquery as cq
-
     def place(radius: float, turn: float) -> tuple[float, float]:
         return radius * math.cos(weight.towards + turn), radius * math.sin(weight.towards + turn)
 
@@ -327,8 +323,6 @@ def built_up(shape: cq.Workplane, plan: ShaftPlan, pins: Sequence[Pin]) -> list[
     """Return pieces of a shaft from its lower end up, one more than ``pins``; each of these belongs to the piece
     below.
     """
-    import cadquery as cq
-
     pieces = [shape]
     far = 4 * (plan.swept + plan.top - plan.ends[0])
     for pin in pins:

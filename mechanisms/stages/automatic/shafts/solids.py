@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechanisms.stages.automatic.assembly import kernel_refusals, materials
+from mechanisms.stages.automatic.layout.plan import free_name
 from mechanisms.stages.automatic.layout.planar import convex_hull
 from mechanisms.stages.automatic.shafts.bearings import bore_of
 from mechanisms.stages.automatic.shafts.bodies import KNUCKLE_PIN, flange, is_carrier, knuckle_eyes, rod_foot
@@ -87,21 +87,10 @@ def solids(
 def _named(made: dict[str, list[Solid]], tolerance: float | None) -> dict[str, list[Solid]]:
     """Return names of letters, digits and _, each once; main pieces are called like their bodies."""
     taken: set[str] = set()
-
-    def named(wish: str) -> str:
-        name = re.sub(r"\W", "_", wish, flags=re.ASCII)
-        name = name if name[:1].isalpha() else f"part_{name}"
-        free, number = name, 1
-        while free.lower() in taken:
-            number += 1
-            free = f"{name}_{number}"
-        taken.add(free.lower())
-        return free
-
-    mains = {body: named("base_plate" if body == "ground" else body) for body in made}
+    mains = {body: free_name("base_plate" if body == "ground" else body, taken) for body in made}
     return {
         body: [
-            replace(solid, name=mains[body] if k == 0 else named(solid.name), tolerance=tolerance)
+            replace(solid, name=mains[body] if k == 0 else free_name(solid.name, taken), tolerance=tolerance)
             for k, solid in enumerate(solids)
         ]
         for body, solids in made.items()
@@ -238,18 +227,15 @@ def _link(own: Along, link: Link, material: str, is_wished: bool) -> list[Solid]
 def _cuts(own: Along, link: Link, eyes: Sequence[tuple[float, float, Eye]]) -> tuple[Cut, ...]:
     """Return where a link is split: at crank pins, where all else of it lies on one side."""
     cuts = list[Cut]()
+    reach = max((math.hypot(a.x - b.x, a.y - b.y) for a in link.eyes for b in link.eyes), default=0.0)
     for k, on in enumerate(link.eyes):
         if on.on not in own.machine.shafts:
             continue
         x, y, eye = eyes[k]
         towards = splits_at(link, x, y)
         if towards is not None:
-            cuts.append(((x, y), towards, _reach(link) + 2 * eye.radius))
+            cuts.append(((x, y), towards, reach + 2 * eye.radius))
     return tuple(cuts)
-
-
-def _reach(link: Link) -> float:
-    return max(math.hypot(a.x - b.x, a.y - b.y) for a in link.eyes for b in link.eyes)
 
 
 def _eyes(own: Along, link: Link) -> list[tuple[float, float, Eye]]:

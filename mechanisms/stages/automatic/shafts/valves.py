@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechanisms.stages.automatic.cams import cut_outline
 from mechanisms.stages.automatic.layout.planar import around
 from mechanisms.stages.automatic.layout.sizes import CLEAR
 from mechanisms.stages.automatic.shafts.bodies import Mounted, marker_on, place
@@ -180,16 +181,9 @@ def _cam(machine: Machine, valve: Valve) -> tuple[np.ndarray, tuple[float, float
     """Return the outline and centre in the frame of its shaft, least radius. Raises UserError for what cannot be
     cut.
     """
-    from mbsd.cams import cam_from
-
     joint = machine.m.joints[valve.cam]
-    profile = cam_from(joint.params["profile"])
-    if profile.undercut:
-        raise UserError(f"{machine.m.name}: cam of joint '{joint.name}' cannot be cut: {profile.problems[0]}")
     marker = marker_on(joint, valve.shaft)
-    c, s = math.cos(marker.angle), math.sin(marker.angle)
-    centre = place(marker)
-    outline = mm(1.0) * profile.outline @ np.array([[c, s], [-s, c]])
+    centre, outline = place(marker), cut_outline(machine.m, joint, marker, mm(1.0))
     return outline + np.array(centre), centre, float(np.hypot(*outline.T).min())
 
 

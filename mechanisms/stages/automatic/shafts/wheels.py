@@ -7,9 +7,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import cadquery as cq
-
 from mbsd.model.teeth import with_radii
+from mechanisms.stages.automatic.assembly import scaled
 from mechanisms.stages.automatic.layout.layout import Layout
 from mechanisms.stages.automatic.layout.planar import Rounded, disc
 from mechanisms.stages.automatic.shafts.bodies import SAME, Mounted, place, plane
@@ -203,10 +202,5 @@ def wheel_solids(own: ShaftWheel, shaft: float, seat: float) -> list[Solid]:
     pieces = [Solid(f"{kind}_{wheel.name}", placed(shape, wheel.x, wheel.y, low), "aluminium", 1)]
     if isinstance(wheel, Pulley):
         pieces.append(rim_of(wheel, thickness, low, seat))
-    return [_scaled(piece, unit) for piece in pieces]
-
-
-def _scaled(piece: Solid, unit: float) -> Solid:
-    shape = cq.Workplane(obj=piece.shape.val().scale(unit))
-    holds = tuple(replace(hold, z=hold.z * unit, radius=hold.radius * unit) for hold in piece.holds)
-    return replace(piece, shape=shape, holds=holds, through_holes=through_holes(shape))
+    sized = [scaled(piece, unit) for piece in pieces]
+    return [replace(piece, through_holes=through_holes(piece.shape)) for piece in sized]

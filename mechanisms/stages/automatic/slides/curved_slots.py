@@ -16,7 +16,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from mechanisms.stages.automatic.layout.curves import continued, curve_path, end_ways, evenly, followed, on_body
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.items import Anchor, Item, Reach
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.plan import build, kind
 from mechanisms.stages.automatic.layout.planar import convex_hull, disc
@@ -29,7 +29,7 @@ from shared.stage.paths import shown_file
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
     from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
+    from mechanisms.stages.automatic.layout.items import Heights
     from mechanisms.stages.automatic.layout.layout import Layout
     from mechanisms.stages.automatic.layout.plan import Plan
 
@@ -84,10 +84,6 @@ class CurvedSlot(Slot):
                 yield replace(item, shape=shape, reach=reach)
             else:
                 yield item
-
-    def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Return the same as for a straight slot."""
-        return Slot.needs(self, levels, layout)
 
 
 @build.register(CurvedSlot)

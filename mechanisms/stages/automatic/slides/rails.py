@@ -16,13 +16,11 @@ from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.plan import Foot, build, kind
 from mechanisms.stages.automatic.layout.planar import Rounded, core_gaps, disc
 from mechanisms.stages.automatic.layout.sizes import Extent, extent
-from mechanisms.stages.automatic.slides.slides import HALF_LENGTH, POST, RAIL, Slide
+from mechanisms.stages.automatic.slides.slides import HALF_LENGTH, POST, RAIL, Slide, bar
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded
 
 if TYPE_CHECKING:
-    import cadquery as cq
-
     from mbsd import Mechanism, Solution
     from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.items import Heights, Levels
@@ -52,7 +50,7 @@ type Ends = list[tuple[float, float]]
 
 
 @dataclass(frozen=True, eq=False)
-class Crossing:
+class Crossing(Feature):
     """Slides on ground in the grooves of one plate."""
 
     slides: tuple[Slide, ...]
@@ -159,20 +157,15 @@ def crossed(crossing: Crossing, plan: Plan, heights: Heights) -> None:
     top, bottom = face - fit.axial, fit.seat
     plate = extruded(outline.circle(*crossing.middle, CORE), top - bottom, bottom)
     for slide in crossing.slides:
-        plate = plate.union(_bar(crossing.groove(slide), TONGUE / 2 + WALL, bottom, top))
+        plate = plate.union(bar(crossing.groove(slide), TONGUE / 2 + WALL, bottom, top))
     plate = eased(plate, 0.8, ">Z", chamfer=True)
     floor = top - TONGUE_DEPTH
     for slide in crossing.slides:
-        plate = plate.cut(_bar(crossing.groove(slide), (TONGUE + fit.running) / 2, floor, top + 1.0))
+        plate = plate.cut(bar(crossing.groove(slide), (TONGUE + fit.running) / 2, floor, top + 1.0))
         plan.feet += [Foot("", x, y, TONGUE / 2 + WALL) for x, y in crossing.groove(slide)]
-        tongue = _bar(crossing.tongue(slide), TONGUE / 2, floor + fit.axial, face - fit.seat)
+        tongue = bar(crossing.tongue(slide), TONGUE / 2, floor + fit.axial, face - fit.seat)
         plan.make(slide.block, f"tongue_{slide.name}", eased(tongue, 0.5, "<Z", chamfer=True), "bronze", 0)
     plan.make("ground", f"grooves_{crossing.name}", plate, "aluminium", 0)
-
-
-def _bar(ends: Ends, radius: float, z0: float, z1: float) -> cq.Workplane:
-    (x0, y0), (x1, y1) = ends
-    return extruded(outline.hull([(x0, y0, radius), (x1, y1, radius)]), z1 - z0, z0)
 
 
 # Blocks that slide along one line of a body: on one rail where they never meet, else on rails one above the other.
@@ -246,7 +239,8 @@ def _laid(line: list[Slide], layout: Layout) -> list[Slide]:
     taken: list[tuple[float, float]] = []
     beside = _rail_distance(layout)
     for host, *guests in rails:
-        low, high = _joined([_span(slide, line[0]) for slide in (host, *guests)])
+        lows, highs = zip(*(_span(slide, line[0]) for slide in (host, *guests)), strict=True)
+        low, high = min(lows), max(highs)
         if host.rail == "ground":
             for first, last in taken * len(taken):  # a longer rail may come to another one
                 if low - beside < last and first < high + beside:
@@ -286,10 +280,6 @@ def _span(slide: Slide, line: Slide) -> tuple[float, float]:
     x, y, angle = line.rail_at
     places = (np.array(slide.rail_ends()) - (x, y)) @ np.array([math.cos(angle), math.sin(angle)])
     return float(places.min()), float(places.max())
-
-
-def _joined(spans: Sequence[tuple[float, float]]) -> tuple[float, float]:
-    return min(low for low, _ in spans), max(high for _, high in spans)
 
 
 def _with_ends(slide: Slide, line: Slide, low: float, high: float) -> Slide:

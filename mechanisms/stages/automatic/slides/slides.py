@@ -12,6 +12,7 @@ import numpy as np
 
 from mechanisms.stages.automatic.layout import motion
 from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.plan import Foot, build
 from mechanisms.stages.automatic.layout.planar import Rounded
 from mechanisms.stages.automatic.layout.sizes import CLEAR
@@ -51,7 +52,7 @@ WALL = 3.0
 
 
 @dataclass(frozen=True, eq=False)
-class Slide:
+class Slide(Feature):
     """A rail on one body and a block on another: places and directions (rmm, rad) in their frames, and the travel."""
 
     name: str
@@ -263,6 +264,9 @@ def _stops(slide: Slide, z0: float, z1: float, plan: Plan) -> None:
 
 def _bar(ends: list[tuple[float, float]], radius: float, z0: float, z1: float) -> cq.Workplane:
     """Return a bar with round ends and eased edges between two heights."""
-    (x0, y0), (x1, y1) = ends
-    shape = extruded(outline.hull([(x0, y0, radius), (x1, y1, radius)]), z1 - z0, z0)
-    return eased(shape, min(0.6, 0.2 * (z1 - z0)), ">Z", chamfer=True)
+    return eased(bar(ends, radius, z0, z1), min(0.6, 0.2 * (z1 - z0)), ">Z", chamfer=True)
+
+
+def bar(ends: list[tuple[float, float]], radius: float, z0: float, z1: float) -> cq.Workplane:
+    """Return a bar with round ends and sharp edges between two heights."""
+    return extruded(outline.hull([(x, y, radius) for x, y in ends]), z1 - z0, z0)

@@ -15,11 +15,10 @@ from mechanisms.stages.automatic.layout.items import BASE, Anchor, Item, Need, R
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.plan import Foot, build, kind
 from mechanisms.stages.automatic.layout.planar import around, convex_hull, disc
-from mechanisms.stages.automatic.pins.pin_solids import standing
-from mechanisms.stages.automatic.pins.pins import Pin
+from mechanisms.stages.automatic.pins.pin_solids import boss_height, holding_eye, standing
+from mechanisms.stages.automatic.pins.pins import SAME, Pin
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded
-from shared.shapes.link import Eye
 from shared.shapes.outline import band, loop
 from shared.shapes.pin import Head, grooved, pin, washer
 from shared.shapes.solid import Roll, Solid, placed
@@ -39,9 +38,6 @@ if TYPE_CHECKING:
 # A pin that runs in several slots: one pin of its body, with a roller in each of them.
 #
 # A crank that moves two yokes, or indexes two Geneva wheels, has its slots on one side of it or on both.
-
-SAME = 0.02
-"""Pins nearer than this are one (rmm)."""
 
 
 class InSlot(Protocol):
@@ -121,7 +117,7 @@ WALL = 7.0
 
 
 @dataclass(frozen=True, eq=False)
-class Slot:
+class Slot(Feature):
     """Places (rmm) of the pin on its body, and of the slot on the other: the way of the pin's middle in it."""
 
     name: str
@@ -381,10 +377,10 @@ def _pin(through: list[InSlot], large: bool, depth: float | None, plan: Plan, he
         plan.add("ground", pivot.washer_at(f"washer_{first.name}", x, y, height + fit.seat))
         start = 0.5
     else:
-        rise = _boss(min(low for low, _ in above) - heights.top(body), plan) if above else 0.0
-        drop = _boss(heights.bottom(body) - max(high for _, high in under), plan) if under else 0.0
-        eye = Eye(sizes.eye - 0.5, pivot.held, above=rise, below=drop, boss=min(9.5, sizes.hardware))
-        plan.eye(body, x, y, eye)
+        over = min((low for low, _ in above), default=-math.inf) - heights.top(body)
+        below = heights.bottom(body) - max((high for _, high in under), default=math.inf)
+        rise, drop = (boss_height(gap - fit.axial - pivot.washer_room) for gap in (over, below))
+        plan.eye(body, x, y, holding_eye(sizes, rise, drop))
         if above:
             plan.add(body, pivot.washer_at(f"washer_{first.name}", x, y, heights.top(body) + rise + fit.seat))
         if under:
@@ -395,10 +391,3 @@ def _pin(through: list[InSlot], large: bool, depth: float | None, plan: Plan, he
             start = min(low for low, _ in under) + 0.1 if depth is None else under[0][1] - depth + 0.4
     shape = pin(pivot.pin, end - start, head)
     plan.make(body, f"pin_{first.name}", placed(shape, x, y, start), "brass", 0)
-
-
-def _boss(gap: float, plan: Plan) -> float:
-    """Return how high a boss is that leaves room for a washer and for the slot's plate to move."""
-    pivot = plan.layout.sizes.pivot
-    height = gap - pivot.fit.axial - pivot.washer_room
-    return 0.0 if height < 0.05 else height

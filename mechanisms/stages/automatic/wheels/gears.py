@@ -16,6 +16,7 @@ from mechanisms.stages.automatic.layout.items import Item, Reach
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.plan import FORCE_KINDS, force_kind, kind
 from mechanisms.stages.automatic.layout.sizes import Extent, extent
+from mechanisms.stages.automatic.pins.pins import SAME
 from mechanisms.stages.automatic.wheels import racks, wheels
 from mechanisms.stages.automatic.wheels.pulleys import BELTS, Belt, Pulley, belts
 from mechanisms.stages.automatic.wheels.racks import Rack, add_way
@@ -288,8 +289,6 @@ def _phase_of_wheel(wheel: Wheel, mate: Wheel, layout: Layout) -> float:
 # teeth. A wheel that several joints name is one, unless its mates overlap: then it is an equal one in another layer.
 
 GEARS, RACKS, PLAYING = "gear_pair", "rack_and_pinion", "gear_mesh"
-SAME = 0.02
-"""Wheels nearer than this (rmm) have one centre."""
 TIP = 0.12
 """Height of teeth above the pitch circle where no module is given, at most, in radii of the smaller wheel."""
 CENTRES = 0.02

@@ -11,7 +11,8 @@ import cadquery as cq
 import numpy as np
 
 from mbsd.model.teeth import with_radii
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.items import Item, Reach
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.plan import build
 from mechanisms.stages.automatic.layout.planar import Rounded
 from mechanisms.stages.automatic.layout.sizes import Extent, Sizes, extent
@@ -27,7 +28,7 @@ from shared.stage.paths import shown_file
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
     from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
+    from mechanisms.stages.automatic.layout.items import Heights
     from mechanisms.stages.automatic.layout.layout import Layout
     from mechanisms.stages.automatic.layout.plan import Plan
     from shared.shapes.link import Eye
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
 # Pulleys: wheels with a rim for a round belt, or for a chain where the joint has teeth; what the belt needs of room.
 #
 # The rim is a piece of its own and says where the film lays the belt (render/film/tubes/belts.py), which is no solid:
-# its strands keep other parts out of their layer, and the clearance knows it as a band (stages/clearance/belts.py).
+# its strands keep other parts out of their layer, and the clearance knows it as a band (stages/clearance/meshing.py).
 
 LEAST = 19.0
 """Least pitch radius of a pulley (rmm)."""
@@ -76,16 +77,12 @@ class Pulley(Wheel):
 
 
 @dataclass(frozen=True, eq=False)
-class Belt:
+class Belt(Feature):
     """The strands of a belt between two pulleys: what must stay out of their way."""
 
     name: str
     pulleys: tuple[Pulley, Pulley]
     crossed: bool
-
-    def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """Return an empty list."""
-        return []
 
     def items(self, layout: Layout) -> Iterable[Item]:
         """Yield both strands, in a body in which they rest; none where there is no such body."""
@@ -105,13 +102,6 @@ class Belt:
                 shape = Rounded(core, 2 * BELT)
                 yield Item(f"the belt of {self.name}", body, shape, Reach((first.layer,)), source=self, meshes=names)
             return
-
-    def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Return an empty list."""
-        return []
-
-    def build(self, plan: Plan, heights: Heights) -> None:
-        """Nothing: the film lays it."""
 
 
 # The solids of pulleys (rmm): a disc with a web, and the rim round it, grooved for a round belt or cut for a chain.

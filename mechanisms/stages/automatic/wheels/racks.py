@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.items import Anchor, Item, Reach
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.plan import Foot, build
 from mechanisms.stages.automatic.layout.planar import Rounded, disc
 from shared.shapes.build import extruded
@@ -22,7 +23,7 @@ from shared.stage.paths import shown_file
 if TYPE_CHECKING:
     from mbsd import Mechanism
     from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
+    from mechanisms.stages.automatic.layout.items import Heights
     from mechanisms.stages.automatic.layout.layout import Layout
     from mechanisms.stages.automatic.layout.plan import Plan
     from mechanisms.stages.automatic.wheels.wheels import Wheel
@@ -46,7 +47,7 @@ FAR = 0.05
 
 
 @dataclass(eq=False)
-class Rack:
+class Rack(Feature):
     """Its pitch line is the x axis of (x, y, angle) on its body (rmm, rad); the teeth point along y."""
 
     name: str
@@ -139,10 +140,6 @@ class Rack:
         )
         for x, y in self.seats(layout):
             yield Item(f"a stud of {self.what}", self.body, disc(x, y, STUD), reach, source=self, spared=False)
-
-    def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Return an empty list."""
-        return []
 
 
 def add_way(m: Mechanism, rack: Rack, pinion: Wheel, joint: Joint, layout: Layout) -> None:

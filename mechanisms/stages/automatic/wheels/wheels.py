@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Protocol
 import cadquery as cq
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.items import Anchor, Item, Reach
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.plan import Foot, build
 from mechanisms.stages.automatic.layout.planar import Rounded, disc, least_gap
 from mechanisms.stages.automatic.pins.free_bodies import Face
@@ -24,7 +25,7 @@ from shared.shapes.outline import circle
 from shared.shapes.solid import placed
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
+    from mechanisms.stages.automatic.layout.items import Heights
     from mechanisms.stages.automatic.layout.layout import Carrier, Layout
     from mechanisms.stages.automatic.layout.plan import Plan
 
@@ -57,7 +58,7 @@ class Mate(Protocol):
 
 
 @dataclass(eq=False)
-class Wheel:
+class Wheel(Feature):
     """One wheel (rmm, rad in its body's frame)."""
 
     name: str
@@ -161,10 +162,6 @@ class Wheel:
         at = self.outside - RIM / 2
         angles = [math.radians(degrees + quarter) for quarter in (0, 90, 180, 270)]
         return [(self.x + at * math.cos(a), self.y + at * math.sin(a)) for a in angles]
-
-    def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Return an empty list."""
-        return []
 
 
 def _near(posts: list[tuple[float, float]], layout: Layout) -> int:

@@ -43,7 +43,7 @@ class Notes(msgspec.Struct, forbid_unknown_fields=True):
     """True if parts of a model may follow from those of the machine."""
 
 
-class Made(msgspec.Struct, forbid_unknown_fields=True):
+class WorkerParts(msgspec.Struct, forbid_unknown_fields=True):
     """The parts of a mechanism."""
 
     document: bytes = b""
@@ -56,14 +56,14 @@ class Made(msgspec.Struct, forbid_unknown_fields=True):
     """Why the stage made none."""
 
 
-def read(name: str, content: bytes, own_file: str, program: Mapping[str, str]) -> Made:
+def read(name: str, content: bytes, own_file: str, program: Mapping[str, str]) -> WorkerParts:
     """Return the parts of the mechanism ``name`` from the bytes that a worker sent.
 
     ``own_file`` is the author's file that they must follow from, ``program`` has the versions of the packages here.
     Raises WrongAnswer unless everything holds together: document, names, hashes, solids with their meshes and masses.
     """
     try:
-        made = msgspec.msgpack.decode(content, type=Made)
+        made = msgspec.msgpack.decode(content, type=WorkerParts)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise WrongAnswer(f"the parts of {name} cannot be read ({printable(str(error))})") from error
     if made.refusal:
@@ -129,7 +129,7 @@ def _refuse_other_notes(name: str, fields: Mapping[str, Any], own_file: str) -> 
             _refuse(name, f"they follow from sources outside the project ('{source}')")
 
 
-def _refuse_other_solids(name: str, made: Made) -> None:
+def _refuse_other_solids(name: str, made: WorkerParts) -> None:
     """Have a process read all meshes and solids, so that one on which the CAD kernel crashes ends nothing else."""
     with tempfile.TemporaryDirectory(prefix="mbsd-parts-") as folder:
         (Path(folder) / "parts.json").write_bytes(made.document)

@@ -9,8 +9,8 @@ import msgspec
 from mechanisms.stages.loading.inputs import name_of
 from mechanisms.stages.loading.loading import has
 from mechanisms.stages.parts.on_cluster import answer, built
-from mechanisms.stages.parts.on_cluster.answer import Made
-from mechanisms.stages.parts.on_cluster.author_files import Order, by_content, collected
+from mechanisms.stages.parts.on_cluster.answer import WorkerParts
+from mechanisms.stages.parts.on_cluster.built import Order, by_content, collected
 from shared.cluster.address import connected
 from shared.cluster.deal import Deal, Work, content_hash
 from shared.cluster.preload import OF_PARTS, PARTS, identity
@@ -26,7 +26,7 @@ GRACE = 120.0
 """Seconds after which a worker that has nothing to do makes them too; the first answer counts."""
 
 
-def made_elsewhere(name: str, scale: Scale | None, machine: bytes, before: Iterable[str]) -> Made | None:
+def made_elsewhere(name: str, scale: Scale | None, machine: bytes, before: Iterable[str]) -> WorkerParts | None:
     """Return the parts of ``name`` as a worker made them; None where the stage there refused, which is reported from
     here.
 
@@ -50,7 +50,7 @@ def made_elsewhere(name: str, scale: Scale | None, machine: bytes, before: Itera
     own_file = name_of(paths.mechanism_file(name, "parts" if has(name, "parts") else "mechanism"))
     title = Out(name, scale).title
 
-    def read(_: str, content: bytes) -> Made:
+    def read(_: str, content: bytes) -> WorkerParts:
         return answer.read(name, content, own_file, order.program)
 
     with terminable(), connected() as client:

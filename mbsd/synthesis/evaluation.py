@@ -14,7 +14,7 @@ from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
 from mbsd.base.quantity import counted
 from mbsd.derivatives.driven.sweeps import SweepTangents
-from mbsd.derivatives.refused import refuse_unfit
+from mbsd.derivatives.requests import refuse_unfit
 from mbsd.derivatives.sensitivities import Tangents, moves_freely, simulation_tangents, values_and_slopes
 from mbsd.dynamics.measures.kinds import Measure
 from mbsd.dynamics.simulate import output_times, refuse_bad_steps

@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from mbsd.derivatives.numbers.number_steps import size_of, step_of
+from mbsd.derivatives.numbers.variants import size_of, step_of
 from mbsd.synthesis.designs import Designs, Paths
 from mbsd.synthesis.target import Target
 

@@ -13,15 +13,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from mbsd.derivatives.free.free_tangents import REACH, at_rows, slight_changes
+from mbsd.derivatives.free.free_tangents import REACH, Stretch, Tangents, at_rows, slight_changes
 from mbsd.derivatives.free.linear_motion import Carried, carried
-from mbsd.derivatives.free.stretch import Stretch, Tangents
-from mbsd.derivatives.numbers.number_steps import step_of
 from mbsd.derivatives.numbers.terms import Along, Terms
-from mbsd.derivatives.numbers.variants import ALLOWED, FAR, TINY, Variants
+from mbsd.derivatives.numbers.variants import ALLOWED, FAR, TINY, Variants, step_of
 from mbsd.derivatives.smooth.between_looks import between_looks
-from mbsd.derivatives.smooth.forces_beside import slopes_of_forces
-from mbsd.derivatives.smooth.rates_beside import FIRST, Held, motions_beside, rates_beside
+from mbsd.derivatives.smooth.held_motion import FIRST, Held, motions_beside, rates_beside, slopes_of_forces
 from mbsd.derivatives.smooth.sides import BothSides, Sides, forces_beside
 from mbsd.derivatives.smooth.smooth_motion import CLOSE, NotSmooth
 from mbsd.dynamics.independent.arrays import Embedding

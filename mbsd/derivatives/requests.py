@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from mbsd.base.arguments import described
+from mbsd.base.arguments import described, refuse_other_arguments
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
-from mbsd.derivatives.solution_rows import rows_of
+from mbsd.base.warning import quiet
+from mbsd.derivatives.numbers.terms import rows_of
 from mbsd.dynamics.measures.kinds import Measure
 from mbsd.dynamics.measures.quantities import ACCELERATIONS, Motions, quantity_named
+from mbsd.dynamics.simulate import simulate
+from mbsd.kinematics.sweep import sweep
 from mbsd.model.mechanism import Model
 from mbsd.results.columns import DRIVER, FRAME, JOINT, columns
 from mbsd.results.solution import Solution
@@ -202,3 +205,35 @@ def _numbers(m: Model, label: str, given: Callable[[Solution], Any], sol: Soluti
     if out.dtype.kind not in "fiu" or not out.size or (finite and not np.isfinite(out).all()):
         raise ModelError(f"{m.name}: '{label}' gives {shown(value)}; it must give a number, or an array of them")
     return out.astype(float)
+
+
+INSTANT = 1e-9
+"""s of a simulation that tells the names of quantities."""
+
+
+def refuse_unfit(m: Model, wishes: Sequence[tuple[str, Any]], grid: np.ndarray, free: bool) -> None:
+    """Raise ModelError for quantities that there are not, and for what does not suit output times (T,) (s).
+
+    ``wishes`` are quantities by name, measures and functions, each with the words that an error begins
+    with. Names that may not be are looked for in the motion at its start: a simulation if it is ``free``, else a sweep.
+    """
+    names: list[str] = []
+    for what, wish in wishes:
+        if isinstance(wish, Measure):
+            wish.check(what, grid)
+            names += wish.quantities
+        elif isinstance(wish, str):
+            names.append(wish)
+        elif callable(wish):
+            refuse_other_arguments(what, wish, "a solution")
+    doubtful = [name for name in names if reads_bodies(m, name) is None and reads_forces(m, name) is None]
+    if not doubtful:
+        return
+    with quiet():  # the motion itself says it again
+        if free:
+            first = simulate(m, None, 1, grid[0] + INSTANT * np.arange(2.0), "dop853", 1e-6, None, None, {})
+        else:
+            first = sweep(m, None, 1, grid[:1])
+    known = list(columns(first))
+    for name in doubtful:
+        quantity_named(m, name, known)

@@ -61,7 +61,7 @@ def test_tangents_are_those_of_sweeps(build: Any, vary: Any) -> None:
     x = designs.varied.low + 0.4 * (designs.varied.high - designs.varied.low)
     paths, angles = tangents_of_path(designs, x, GRID)
     assert len(angles) == len(designs.turned)
-    h = 1e-3
+    h = 1e-4
     for k in range(len(x)):
         step = h * np.eye(len(x))[k]
         ahead, behind, far, back = designs(np.array([x + step, x - step, x + 2 * step, x - 2 * step]), True).path

@@ -151,10 +151,10 @@ class IndependentTangents:
         own = np.array([accelerations or p not in self.both.light for p in of])
         light = np.flatnonzero(~own)
         if len(light):
-            many = [np.concatenate([part] * len(light)) for part in (along.t, along.q, z)]
+            t, q, base = (np.concatenate([part] * len(light)) for part in (along.t, along.q, z))
             system, given = packed.system, states[light].reshape(-1, *states.shape[2:])
             there, rest = poses[light].reshape(-1, 2, width), a[light].reshape(-1, width)
-            self._move(self.arrays, system.mass, system.inertia, (*many, given), False, there, rest)
+            self._move(self.arrays, system.mass, system.inertia, (t, q, base, given), False, there, rest)
             poses[light] = there.reshape(len(light), *poses.shape[1:])
         for s in np.flatnonzero(own).tolist():
             arrays, here = every[of[s]].arrays[s - of.index(of[s])], (along.t, along.q, z, states[s])

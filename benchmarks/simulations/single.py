@@ -344,14 +344,14 @@ def exudyn(problem: Problem) -> Iterator[Case]:
                     touch(first, second, 2 * RADIUS, 0.5)
             return system, nodes
 
-        def fresh(settings: Any = settings, made: Callable[[], Any] = made) -> Run:
-            system, _ = build_system()
+        def fresh(settings: Any = settings, build: Callable[[], Any] = build_system) -> Run:
+            system, _ = build()
             settings.solution.sensors.writePeriod = 1e9
             system.Assemble()
             return lambda: system.SolveDynamic(settings, solverType=kind)
 
-        def outputs(times: np.ndarray, settings: Any = settings, made: Callable[[], Any] = made) -> np.ndarray:
-            system, nodes = build_system()
+        def outputs(times: np.ndarray, settings: Any = settings, build: Callable[[], Any] = build_system) -> np.ndarray:
+            system, nodes = build()
             words = {"storeInternal": True, "outputVariableType": exu.OutputVariableType.Coordinates}
             sensors = [system.AddSensor(u.SensorNode(nodeNumber=node, **words)) for node in nodes]
             settings.solution.sensors.writePeriod = float(times[1])

@@ -119,7 +119,7 @@ def test_forces_are_those_of_the_solver(of: Layout) -> None:
 
 
 def test_bad_layouts_are_refused() -> None:
-    with pytest.raises(ModelError, match="2 banks, 1 throws and 2 places"):
+    with pytest.raises(ModelError, match="2 banks, 1 throw and 2 places"):
         layout("x", [0, 0], [0])
     with pytest.raises(ModelError, match="cylinder 2: bank is nan"):
         layout("x", [0, math.nan], [0, 0])

@@ -109,7 +109,7 @@ def test_a_table_of_pressures_needs_the_gap() -> None:
         ({"gas": CYCLE, "gap": 0.01}, "gap is 10 mm, and a compression of 15 makes it 12.8571 mm; leave it out"),
         ({"gas": 8.0}, r"gas must be two_stroke\(...\)"),
         ({"gap": -0.01}, "gap is -0.01 m; it must be positive"),
-        ({"throws": ()}, "0 banks"),
+        ({"throws": ()}, "no banks"),
         ({"counterweight": "some"}, "counterweight 'some'; it is 'auto'"),
     ],
 )

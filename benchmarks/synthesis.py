@@ -17,7 +17,7 @@ import numpy as np
 
 import mbsd
 from benchmarks.rows import Bar, Row
-from mbsd.synthesis.matching import at, feet
+from mbsd.synthesis.target import feet, places_at
 
 PROBLEM = "four-bar through four points, from a known one"
 POINTS = np.array(
@@ -59,7 +59,7 @@ def error(m: mbsd.Mechanism) -> float:
     """Largest distance (m) of a point from the path of P."""
     point = m.sweep(steps=STEPS).point("P")
     path = np.column_stack([point.x, point.y])
-    return float(np.hypot(*(at(path, feet(path, POINTS, True), True) - POINTS).T).max())
+    return float(np.hypot(*(places_at(path, feet(path, POINTS, True), True) - POINTS).T).max())
 
 
 def _ours() -> mbsd.Mechanism:

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from mbsd.analyses.modes import Mode
     from mbsd.analyses.state_space import Linearisation
     from mbsd.derivatives.sensitivities import Sensitivities
-    from mbsd.drawing.of_solution import SkeletonDrawer
+    from mbsd.drawing.drawer import SkeletonDrawer
     from mbsd.dynamics.batch.simulate_many import Simulations
     from mbsd.dynamics.measures.kinds import Measure
     from mbsd.kinematics.batch import Batch
@@ -310,14 +310,14 @@ class Mechanism(Building):
 
     def topology(self) -> Svg:
         """Return bodies and joints as a diagram, redundant joints in red; ``.save(path)`` writes SVG."""
-        from mbsd.drawing.topology.topology import topology
+        from mbsd.drawing.topology import topology
 
         return topology(self)
 
     @property
     def drawer(self) -> SkeletonDrawer:
         """The drawer of its solutions, for ``draw``, ``animate`` and ``view`` of a Solution."""
-        from mbsd.drawing.of_solution import SkeletonDrawer
+        from mbsd.drawing.drawer import SkeletonDrawer
 
         return SkeletonDrawer()
 

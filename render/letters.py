@@ -12,7 +12,7 @@ MEASURED = 200.0
 
 
 def font_of(size: float, bold: bool = False) -> Any:
-    """Inter, which Blender brings along, ``size`` pixels high; Pillow's own where it does not."""
+    """Return Inter, which Blender brings along, ``size`` pixels high; without it Pillow's own font."""
     from PIL import ImageFont
 
     path = _inter()

@@ -144,7 +144,7 @@ class Problem(NamedTuple):
     """s"""
     exact: Callable[[float], float | list[float]]
     limit: float
-    """Of the error (m); wide enough for contacts that press back."""
+    """Largest error allowed (m); wide enough for contacts that press back."""
     axis: str = "x"
 
 
@@ -284,7 +284,7 @@ def exudyn(problem: Problem) -> Iterator[Case]:
         settings.timeIntegration.numberOfSteps = steps
         settings.timeIntegration.verboseMode = 0
 
-        def made(problem: Problem = problem, stiffness: float = stiffness) -> tuple[Any, Any]:
+        def build_system(problem: Problem = problem, stiffness: float = stiffness) -> tuple[Any, Any]:
             system = exu.SystemContainer().AddSystem()
             ground = system.AddMarker(
                 u.MarkerNodeCoordinate(nodeNumber=system.AddNode(u.NodePointGround()), coordinate=0)
@@ -344,14 +344,14 @@ def exudyn(problem: Problem) -> Iterator[Case]:
                     touch(first, second, 2 * RADIUS, 0.5)
             return system, nodes
 
-        def fresh(settings: Any = settings, made: Callable[[], Any] = made) -> Run:
-            system, _ = made()
+        def fresh(settings: Any = settings, build: Callable[[], Any] = build_system) -> Run:
+            system, _ = build()
             settings.solution.sensors.writePeriod = 1e9
             system.Assemble()
             return lambda: system.SolveDynamic(settings, solverType=kind)
 
-        def outputs(times: np.ndarray, settings: Any = settings, made: Callable[[], Any] = made) -> np.ndarray:
-            system, nodes = made()
+        def outputs(times: np.ndarray, settings: Any = settings, build: Callable[[], Any] = build_system) -> np.ndarray:
+            system, nodes = build()
             words = {"storeInternal": True, "outputVariableType": exu.OutputVariableType.Coordinates}
             sensors = [system.AddSensor(u.SensorNode(nodeNumber=node, **words)) for node in nodes]
             settings.solution.sensors.writePeriod = float(times[1])

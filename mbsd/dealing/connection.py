@@ -9,7 +9,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mbsd.dealing.voice import Voice
+from mbsd.dealing.manner import Voice
 
 if TYPE_CHECKING:
     from distributed import Client, Security
@@ -23,7 +23,7 @@ TIMEOUT = 10.0
 
 @contextmanager
 def connected(where: str, voice: Voice) -> Iterator[Client]:
-    """A client of the scheduler at ``where``, closed afterwards. Raises the voice's error if none answers."""
+    """Return a client of the scheduler at ``where``, closed afterwards. Raises the voice's error if none answers."""
     try:
         from distributed import Client
     except ImportError as error:
@@ -42,7 +42,7 @@ def connected(where: str, voice: Voice) -> Iterator[Client]:
 
 
 def certificates(where: str, voice: Voice) -> tuple[str, str, str] | None:
-    """Paths of the authority's certificate, our own and its key; None where none are given.
+    """Return paths of the authority's certificate, our own and its key; None where none are given.
 
     Raises the voice's error if one is missing.
     """
@@ -72,7 +72,7 @@ def _security(where: str, voice: Voice) -> Security | None:
 
 
 def workers_of(client: Client) -> dict[str, Any]:
-    """All workers that the scheduler knows now, by address. Raises OSError or RuntimeError if it does not answer.
+    """Return all workers that the scheduler knows, by address. Raises OSError or RuntimeError without an answer.
 
     The scheduler is asked itself: what the client keeps is replaced now and then by a list without workers.
     """
@@ -82,7 +82,7 @@ def workers_of(client: Client) -> dict[str, Any]:
 
 
 def tasks_of(client: Client) -> dict[str, int]:
-    """Tasks that each worker has, of all clients, by address; none where the scheduler does not answer."""
+    """Return tasks of each worker, of all clients, by address; none if the scheduler does not answer."""
     scheduler: Any = client.scheduler
     try:
         answer: Any = client.sync(scheduler.processing, workers=None, callback_timeout=TIMEOUT)
@@ -92,7 +92,7 @@ def tasks_of(client: Client) -> dict[str, int]:
 
 
 def size_of(client: Client, key: str) -> int:
-    """Bytes of a result, as its worker reported; 0 where there is none or the scheduler does not answer."""
+    """Return bytes of a result, as its worker reported; 0 where there is none or the scheduler does not answer."""
     try:
         answer: Any = client.nbytes(keys=[key], summary=False)
     except (OSError, KeyError, RuntimeError):
@@ -101,5 +101,5 @@ def size_of(client: Client, key: str) -> int:
 
 
 def _is_fit_to_print(name: str) -> bool:
-    """A worker chooses its address itself, and messages name it."""
+    """Return a worker chooses its address itself, and messages name it."""
     return len(name) < 200 and name.isascii() and name.isprintable() and " " not in name

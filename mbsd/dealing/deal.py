@@ -12,14 +12,11 @@ from concurrent.futures import BrokenExecutor
 from functools import partial
 from typing import Any, NamedTuple
 
-from mbsd.dealing.hand import Group, Hand
+from mbsd.dealing.hand import Group, Hand, stolen, unclaimed
 from mbsd.dealing.identity import Trust, differences, together
-from mbsd.dealing.manner import Kind, Manner
+from mbsd.dealing.manner import Kind, Manner, Voice
 from mbsd.dealing.pools import Gone, Here
-from mbsd.dealing.report import AROUND, Key, read_identity, read_report
-from mbsd.dealing.shares import stolen, unclaimed
-from mbsd.dealing.voice import Voice
-from mbsd.dealing.wrong_answer import WrongAnswer, printable
+from mbsd.dealing.report import AROUND, Key, WrongAnswer, printable, read_identity, read_report
 
 TICK = 0.2
 """Seconds between two looks at the workers while nothing comes."""
@@ -82,13 +79,13 @@ class Deal:
         """What was said of the waiting."""
 
     def results(self) -> Iterator[tuple[Any, Any, str]]:
-        """Key, result and worker of every order as they come, each once; raises the voice's error with the reason."""
+        """Yield key, result and worker of every order as they come, each once. Raises the voice's error."""
         for part in self.parts():
             for key, result in part.results:
                 yield key, result, part.worker
 
     def parts(self) -> Iterator[Part]:
-        """The same, as workers answer."""
+        """Return the same, as workers answer."""
         try:
             while self._left:
                 self._survey()
@@ -110,7 +107,7 @@ class Deal:
                 self._take_back(hand)
 
     def _survey(self) -> None:
-        """Who came, who went, who stalls."""
+        """Look who came, who went and who stalls."""
         if time.monotonic() - self._surveyed < SURVEY:
             return
         self._surveyed = time.monotonic()
@@ -133,7 +130,7 @@ class Deal:
         self._refuse_none()
 
     def _greet(self, hand: Hand) -> None:
-        """A worker is new."""
+        """Greet a new worker, and ask for its identity where that matters."""
         self.hands[hand.name] = hand
         if self.trust is None:
             hand.fit = True
@@ -141,7 +138,7 @@ class Deal:
             self.pool.ask(hand.name, self.trust.request, lambda answer: self._events.put((hand, None, answer)))
 
     def _mourn(self, hand: Hand, weight: int) -> None:
-        """A worker has gone; what it had goes to others, in smaller groups where that may have been the reason."""
+        """Give what a worker that has gone had to others, in smaller groups if that may have been the reason."""
         del self.hands[hand.name]
         if hand.fit:
             self._lost_one = True
@@ -153,7 +150,7 @@ class Deal:
         self._take_back(hand)
 
     def _condemned(self) -> Iterator[Part]:
-        """Orders that end every worker."""
+        """Yield results of orders that end every worker."""
         for key in [key for key, deaths in self._deaths.items() if deaths >= DEATHS and key in self._left]:
             self._left.discard(key)
             if self.kind.deadly:
@@ -212,7 +209,7 @@ class Deal:
         return self.manner.first_alone and nothing_done and away
 
     def _turn(self, hand: Hand) -> tuple[float, ...]:
-        """Who comes first: of equal workers one that has nothing to do for others, and not all deals the same one."""
+        """Return a worker's place in line: those with least to do first, and not the same one for all deals."""
         load = len(hand.groups) / hand.threads
         return load, hand.each, hand.tasks, zlib.crc32(f"{self.kind.salt} {hand.name}".encode())
 
@@ -276,7 +273,7 @@ class Deal:
             self.voice.warn(f"worker {hand.name} is refused: {differ}")
 
     def _judge_failure(self, hand: Hand, key: Key, reason: str) -> None:
-        """An order is at fault where it failed on several workers that do others well, or on all that there are."""
+        """Raise an error for an order that failed on several workers that do others well, or on all there are."""
         self._attempts[key] += 1
         tried = self._failed_on.setdefault(key, set())
         tried.add(hand.name)
@@ -296,7 +293,7 @@ class Deal:
             self._take_back(hand)
 
     def _leave_out(self, hand: Hand, reason: str) -> None:
-        """A worker that sends something else than what was ordered may do so again, so it gets nothing more."""
+        """Give nothing more to a worker that sent something else than what was ordered."""
         hand.leave_out(f"it sent a wrong answer: {reason}")
         self.voice.warn(self.voice.lied.format(worker=hand.name, reason=reason))
         self._take_back(hand)

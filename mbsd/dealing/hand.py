@@ -1,10 +1,14 @@
-"""One worker as the coordinator sees it: what it has to do, how fast it is, how often it failed."""
+"""One worker as the coordinator sees it, and the orders that it gets next.
+
+It gets orders that nobody has; towards the end, copies of orders that others hold.
+"""
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections import Counter, deque
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 
 from mbsd.dealing.manner import Manner
@@ -57,7 +61,7 @@ class Hand:
         return able and len(self.groups) < ahead * self.threads
 
     def size(self, fair: int) -> int:
-        """Orders of its next group, ``fair`` at most."""
+        """Return the number of orders of its next group, ``fair`` at most."""
         if not math.isfinite(self.each):
             return 1
         return max(1, min(fair, self.manner.largest, int(self.manner.target / max(self.each, 1e-6))))
@@ -69,14 +73,14 @@ class Hand:
         self.groups.append(group)
 
     def drop(self, group: Group) -> None:
-        """It is through with a group, so it lives."""
+        """Drop a group that it has finished, so it lives."""
         self.stalled = False
         if group in self.groups:
             self.groups.remove(group)
             self.began = time.monotonic()
 
     def count(self, done: int, seconds: float) -> None:
-        """It did so many orders in so many seconds."""
+        """Count orders that it did in so many seconds."""
         if done:
             pace = seconds / done
             # The first order loads and builds, which says too much of the others.
@@ -86,11 +90,11 @@ class Hand:
             self.failures = 0
 
     def leave_out(self, reason: str) -> None:
-        """It gets nothing more."""
+        """Give it nothing more."""
         self.fit, self.aside = False, reason
 
     def fail(self, reason: str) -> bool:
-        """It failed; True where it is left out from now on."""
+        """Count a failure; return True if it is left out from now on."""
         self.failures += 1
         self.resting = time.monotonic() + REST * 2 ** (self.failures - 1)
         if self.failures >= self.manner.failures:
@@ -107,7 +111,7 @@ class Hand:
         return silent > max(manner.times * self.each * len(self.groups[0].keys), manner.patience)
 
     def remaining(self) -> dict[Key, float]:
-        """Seconds until each of its orders should be done, the last one last; infinite where its pace is unknown."""
+        """Return seconds until each of its orders should be done, last one last; infinite if its pace is unknown."""
         passed = time.monotonic() - self.began
         keys = [key for group in self.groups for key in group.keys]
         if not math.isfinite(self.each) or self.stalled:
@@ -116,3 +120,63 @@ class Hand:
             return dict.fromkeys(keys, math.inf)
         each = self.each / self.threads
         return {key: max((at + 1) * each - passed, 0.0) for at, key in enumerate(keys)}
+
+
+UNKNOWN = 5.0
+"""Seconds an order that are assumed of a worker whose pace is not known."""
+WORTH = 1.5
+"""An order is copied if it would be done later than in this many times what it takes."""
+
+
+def unclaimed(
+    hand: Hand,
+    hands: Collection[Hand],
+    pending: deque[Key],
+    left: Collection[Key],
+    failed_on: Mapping[Key, Collection[str]],
+    suspects: Mapping[Key, int],
+) -> list[Key]:
+    """Return orders taken from ``pending``; those that failed on this worker only if no other answers.
+
+    ``suspects`` have ended workers: they go to workers that have answered before, in groups of this size at most.
+    """
+    answering = {worker.name for worker in hands if worker.fit and not worker.aside and not worker.stalled}
+    proven = {worker.name for worker in hands if worker.made} & answering
+    size = hand.size(math.ceil(len(pending) / (2 * hand.threads * max(len(answering), 1))))
+    keys: list[Key] = []
+    passed: list[Key] = []
+    while pending and len(keys) < size:
+        key = pending.popleft()
+        if key not in left:
+            continue
+        tried, most = set(failed_on.get(key, ())), suspects.get(key)
+        if (hand.name in tried and answering - tried) or (most is not None and proven and hand.name not in proven):
+            passed.append(key)
+        elif keys and (most is None) != (keys[0] not in suspects):
+            passed.append(key)
+            break
+        else:
+            size = size if most is None else min(size, most)
+            keys.append(key)
+    pending.extendleft(reversed(passed))
+    return keys
+
+
+def stolen(hand: Hand, hands: Collection[Hand], left: Collection[Key]) -> list[Key]:
+    """Return the last orders of the worker that will be the last to end, if this one would do them sooner.
+
+    For a worker that has answered before, copies with those that never have do not count: these may never answer.
+    """
+    counted = [worker for worker in hands if worker.made or not hand.made]
+    copies = Counter(key for worker in counted for group in worker.groups for key in group.keys)
+    best: list[tuple[float, Key]] = []
+    for other in hands:
+        if other is hand:
+            continue
+        remaining = other.remaining().items()
+        orders = [(at, key) for key, at in remaining if key in left and copies[key] < hand.manner.copies]
+        if orders and (not best or orders[-1][0] > best[-1][0]):
+            best = orders
+    own = hand.each if math.isfinite(hand.each) else UNKNOWN
+    worth = [key for seconds, key in best if seconds > WORTH * own + 0.1]
+    return worth[-hand.size(math.ceil(len(worth) / 2)) :] if worth else []

@@ -21,7 +21,7 @@ class Trust(NamedTuple):
 
 
 def versions(packages: Iterable[str]) -> dict[str, str]:
-    """Python's version and those of these packages, by name."""
+    """Return Python's version and those of these packages, by name."""
     out = {"Python": platform.python_version()}
     for package in packages:
         try:
@@ -32,7 +32,7 @@ def versions(packages: Iterable[str]) -> dict[str, str]:
 
 
 def asker(module: str, function: str, *arguments: Any) -> Callable[[], bytes]:
-    """A function that gives what ``module.function(*arguments)`` returns on a worker, as JSON.
+    """Return a function that gives what ``module.function(*arguments)`` returns on a worker, as JSON.
 
     A worker with other sources understands it as well, as it travels itself and not by its name.
     """
@@ -47,13 +47,13 @@ def asker(module: str, function: str, *arguments: Any) -> Callable[[], bytes]:
 
 
 def differences(theirs: Mapping[str, str], ours: Mapping[str, str]) -> str:
-    """Where another machine differs from this one: ``numpy 2.4.0, here 2.5.5``; empty where it does not."""
+    """Return where another machine differs from this one: ``numpy 2.4.0, here 2.5.5``; empty if it does not."""
     names = [name for name in ours if theirs.get(name) != ours[name]]
     return "; ".join(f"{name} {theirs.get(name, 'unknown')}, here {ours[name]}" for name in names)
 
 
 def together(reasons: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-    """Workers that have the same reason, the first three by name, and that reason."""
+    """Yield workers that have the same reason, the first three by name, and that reason."""
     for reason in sorted(set(reasons.values())):
         names = sorted(name for name, why in reasons.items() if why == reason)
         more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""

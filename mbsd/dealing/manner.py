@@ -1,4 +1,4 @@
-"""How work is dealt out: what is asked of workers, how much they get at once, and when they are given up."""
+"""Terms of a deal: the work asked of workers, how much they get at once, when they are given up, and in which words."""
 
 from __future__ import annotations
 
@@ -60,3 +60,29 @@ class Manner:
     """Whether a worker does as many groups at a time as it has threads."""
     first_alone: bool = False
     """Whether others wait until the first order is done, which compiles what they load."""
+
+
+class Voice(NamedTuple):
+    """Words of one program, with ``{where}`` the scheduler is, ``{shown}`` workers and why they do nothing, and others
+    that stand in these texts.
+    """
+
+    say: Callable[[str], None]
+    warn: Callable[[str], None]
+    error: Callable[[str], Exception]
+    """The error of which a user can cure the cause."""
+    duration: Callable[[float], str]
+    no_scheduler: str
+    gone: str
+    silent: str
+    """The scheduler has been so for too long."""
+    nobody: str
+    """No worker is left, and none comes."""
+    without: str
+    """No worker is there that can do it now."""
+    one_comes: str
+    """What is waited for then."""
+    lied: str
+    failed: str
+    left_out: str
+    """A worker failed for the last time."""

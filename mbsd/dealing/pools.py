@@ -36,11 +36,11 @@ class Here:
     """The address of the scheduler, if there is one."""
 
     def there(self) -> Mapping[str, int] | None:
-        """Threads of each worker that is there, by name; None if that is not known now. Raises Gone."""
+        """Return the threads of each worker that is there, by name; None if not known now. Raises Gone."""
         return {"here": 1}
 
     def busy(self) -> Mapping[str, int]:
-        """Tasks of workers, those of other programs included."""
+        """Return the tasks of workers, those of other programs included."""
         return {}
 
     def ask(self, name: str, asked: Callable[[], bytes], then: Then) -> None:
@@ -86,7 +86,7 @@ class Processes(Here):
         return dict.fromkeys(list(self._running), 1)
 
     def submit(self, name: str, task: Task, arguments: tuple[Any, ...], most: int, then: Then) -> Callable[[], object]:
-        """To one of the processes."""
+        """Submit to one of the processes."""
         try:
             future = self._running[name].submit(task, *arguments)
         except (BrokenExecutor, KeyError) as error:
@@ -139,16 +139,16 @@ class Dask(Here):
         return {name: max(1, int(worker["nthreads"])) for name, worker in workers.items()}
 
     def busy(self) -> Mapping[str, int]:
-        """Tasks of all programs."""
+        """Return the tasks of all programs."""
         return tasks_of(self.client)
 
     def ask(self, name: str, asked: Callable[[], bytes], then: Then) -> None:
-        """Outside of what it has to do."""
+        """Ask outside of what it has to do."""
         client = self.client
         run_aside(lambda: then(_outcome(lambda: client.run(asked, workers=[name], on_error="return").get(name))))
 
     def submit(self, name: str, task: Task, arguments: tuple[Any, ...], most: int, then: Then) -> Callable[[], object]:
-        """Bound to this worker."""
+        """Submit to this worker alone."""
         try:
             future = self.client.submit(
                 task, *arguments, workers=[name], allow_other_workers=False, pure=False, retries=0

@@ -12,8 +12,6 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from mbsd.dealing.wrong_answer import WrongAnswer, printable
-
 AROUND = 4_000_000
 """Bytes of a report beside the results in it."""
 IDENTITY = 100_000
@@ -40,7 +38,7 @@ class Report:
 
 
 def encoded(report: Report) -> bytes:
-    """The report as bytes."""
+    """Return the report as bytes."""
     contents = [content for _, content in report.done]
     header = {
         "lacking": report.lacking,
@@ -54,7 +52,7 @@ def encoded(report: Report) -> bytes:
 
 
 def read_report(answer: Any, keys: Sequence[Key], needed: Collection[str], most: int) -> Report:
-    """The report on the orders ``keys``, none of whose results has more than ``most`` bytes.
+    """Return the report on the orders ``keys``, none of whose results has more than ``most`` bytes.
 
     ``needed`` are the contents that may be asked for. Raises WrongAnswer for one that is malformed or too large, speaks
     of other orders or contents, or leaves an order out without a reason.
@@ -81,7 +79,7 @@ def read_report(answer: Any, keys: Sequence[Key], needed: Collection[str], most:
 
 
 def read_identity(answer: Any) -> dict[str, str]:
-    """Versions and sources of a worker by name, from JSON. Raises WrongAnswer if it is anything else."""
+    """Return versions and sources of a worker by name, from JSON. Raises WrongAnswer if it is anything else."""
     if isinstance(answer, BaseException):
         raise WrongAnswer(printable(f"{type(answer).__name__}: {answer}"))
     refuse_large(len(answer) if isinstance(answer, bytes) else 0, IDENTITY)
@@ -136,3 +134,18 @@ def _json(answer: Any) -> Any:
         return json.loads(answer)
     except (ValueError, RecursionError) as error:
         raise WrongAnswer(f"its answer cannot be read ({printable(str(error))})") from error
+
+
+LONGEST = 400
+"""Characters of a text from elsewhere that are shown."""
+
+
+class WrongAnswer(Exception):
+    """A worker sent something else than what was ordered; the message tells what. No other worker is to blame."""
+
+
+def printable(text: str, longest: int = LONGEST) -> str:
+    """Return a text from another machine for a message: one line of printable characters, cut where it is too long."""
+    line = "".join(letter if letter.isprintable() else " " for letter in text[: longest + 1])
+    line = " ".join(line.split())
+    return line if len(text) <= longest else f"{line[:longest]}..."

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -11,12 +11,19 @@ import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.base.names import Suggesting, names_in, no_such
-from mbsd.derivatives.asked import Wanted, labelled, needed, needs_models, needs_reactions, of_bodies, wanted
 from mbsd.derivatives.driven.sweeps import SweepTangents
 from mbsd.derivatives.free.indexing import watched
-from mbsd.derivatives.refused import refuse_unfit
+from mbsd.derivatives.requests import (
+    Wanted,
+    labelled,
+    needed,
+    needs_models,
+    needs_reactions,
+    of_bodies,
+    refuse_unfit,
+    wanted,
+)
 from mbsd.derivatives.simulations import SimulationTangents
-from mbsd.derivatives.with_model import with_model
 from mbsd.dynamics.prepare.large import mobility
 from mbsd.dynamics.repeated import Repeated
 from mbsd.dynamics.simulate import output_times, refuse_bad_steps
@@ -194,3 +201,30 @@ def simulation_tangents(
     return SimulationTangents(
         m, Repeated(watched(m), grid, tolerance), grid, numbers, partial(needed, of), of_bodies(m, of)
     )
+
+
+class _Later:
+    """The attribute: a mechanism, or what makes one."""
+
+    def __get__(self, sol: Any, owner: type) -> Any:
+        if sol is None:
+            return self
+        held = sol.__dict__["mechanism"]
+        if isinstance(held, Model):
+            return held
+        sol.__dict__["mechanism"] = made = held()
+        return made
+
+    def __set__(self, sol: Any, value: Any) -> None:
+        sol.__dict__["mechanism"] = value
+
+
+class _WithModel(Solution[Any]):
+    mechanism = _Later()  # pyright: ignore[reportAssignmentType]
+
+
+def with_model(sol: Solution, make: Callable[[], Model]) -> Solution:
+    """The solution with the mechanism that ``make`` gives."""
+    out = object.__new__(_WithModel)
+    out.__dict__.update({part.name: sol.__dict__[part.name] for part in fields(sol)}, mechanism=make)
+    return out

@@ -14,21 +14,20 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import SimulationError
-from mbsd.derivatives.asked import OfBodies
 from mbsd.derivatives.driven.sweeps import displaced, extent
 from mbsd.derivatives.driven.tangents import Tangent, by_numbers, has_kinks
-from mbsd.derivatives.free.free_tangents import AT_ONCE, FreeTangents
+from mbsd.derivatives.free.free_tangents import AT_ONCE, FreeTangents, Stretch, Tangents, joined
 from mbsd.derivatives.free.guards import End, contacts_of, refuse_contact_at_start, unshared, ways_of
 from mbsd.derivatives.free.indexing import held_between, solve_ends, unwatched
 from mbsd.derivatives.free.jumps import Jump, jumps_of
 from mbsd.derivatives.free.linear_motion import LATEST, NODES
 from mbsd.derivatives.free.mesh import ROUNDING, apart, first_edges, looked_at, nodes_of
 from mbsd.derivatives.free.step_errors import Finish, refined_to_error
-from mbsd.derivatives.free.stretch import Stretch, Tangents, joined
-from mbsd.derivatives.numbers.straight_variants import variants_beside
-from mbsd.derivatives.numbers.terms import Along, Left
+from mbsd.derivatives.numbers.near_numbers import variants_beside
+from mbsd.derivatives.numbers.terms import Along, Left, along_of, rows_of
 from mbsd.derivatives.numbers.variants import ALLOWED, FAR, KINKED, SECOND, TINY, Variants, Variation, models_of
 from mbsd.derivatives.refused_motions import refuse, refuse_opened, refuse_parted
+from mbsd.derivatives.requests import OfBodies
 from mbsd.derivatives.smooth.independent_tangents import IndependentTangents, suits
 from mbsd.derivatives.smooth.sides import BothSides
 from mbsd.derivatives.smooth.smooth_motion import (
@@ -40,7 +39,6 @@ from mbsd.derivatives.smooth.smooth_motion import (
     motion_of,
     terms_along,
 )
-from mbsd.derivatives.solution_rows import along_of, rows_of
 from mbsd.dynamics.prepare.prepare import prepare_dynamics, started
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.repeated import Outputs, Repeated

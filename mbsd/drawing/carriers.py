@@ -42,7 +42,7 @@ class Frames:
         return np.array([x, y]), theta
 
     def place(self, end: End) -> np.ndarray:
-        """(2,) in the world (m)."""
+        """Return (2,) in the world (m)."""
         return self._pose.point(end.body, end.x, end.y)
 
 
@@ -54,7 +54,7 @@ class Carrier:
     ends: tuple[End, ...] = ()
 
     def moved(self, points: np.ndarray | None, start: Frames, now: Frames) -> np.ndarray:
-        """Points (k, 2) from where they are at the start to where they are carried to (m)."""
+        """Return points (k, 2) from where they are at the start to where they are carried to (m)."""
         if points is None or self.kind == "ground":
             return np.zeros((0, 2)) if points is None else points
         if self.kind == "body":
@@ -77,22 +77,22 @@ GROUND = Carrier("ground")
 
 
 def on_body(name: str) -> Carrier:
-    """A body's frame."""
+    """Return a body's frame."""
     return GROUND if name == "ground" else Carrier("body", (End(name),))
 
 
 def at_place(marker: Marker) -> Carrier:
-    """The place of a marker."""
+    """Return the place of a marker."""
     return GROUND if marker.body.name == "ground" else Carrier("place", (_end(marker),))
 
 
 def along_line(i: Marker, j: Marker) -> Carrier:
-    """The line from marker i to marker j."""
+    """Return the line from marker i to marker j."""
     return Carrier("line", (_end(i), _end(j)))
 
 
 def along_axes(i: Marker, j: Marker) -> Carrier | None:
-    """The place of marker j, for what is drawn there along the axes of marker i; None where these turn otherwise."""
+    """Return the place of marker j, to draw along the axes of marker i; None where these turn otherwise."""
     if i.body is j.body:
         return on_body(i.body.name)
     return at_place(j) if i.body.name == "ground" else None
@@ -103,7 +103,7 @@ def _end(marker: Marker) -> End:
 
 
 def _turn(angle: float) -> np.ndarray:
-    """Rows turn by ``angle``, counter-clockwise."""
+    """Return the matrix that turns rows by ``angle``, counter-clockwise."""
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[c, s], [-s, c]])
 

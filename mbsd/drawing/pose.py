@@ -45,23 +45,23 @@ class Pose:
         return self.released.get(joint, False)
 
     def place(self, marker: Marker) -> np.ndarray:
-        """(2,) of a marker in the world (m)."""
+        """Return (2,) of a marker in the world (m)."""
         return self.point(marker.body.name, marker.x, marker.y)
 
     def point(self, body: str, x: float, y: float) -> np.ndarray:
-        """(2,) of a point of a body (m)."""
+        """Return (2,) of a point of a body (m)."""
         x0, y0, theta = self.frames[body]
         c, s = math.cos(theta), math.sin(theta)
         return np.array([x0 + c * x - s * y, y0 + s * x + c * y])
 
     def axis(self, marker: Marker) -> np.ndarray:
-        """(2,) unit x axis of a marker in the world."""
+        """Return (2,) unit x axis of a marker in the world."""
         angle = self.frames[marker.body.name][2] + marker.angle
         return np.array([math.cos(angle), math.sin(angle)])
 
 
 def start_pose(m: Model) -> Pose:
-    """The closed start pose; the rough one, said not to be closed, if the links do not reach."""
+    """Return the closed start pose; the rough one, said not to be closed, if the links do not reach."""
     from mbsd.arrays.packing import pack
     from mbsd.kinematics.pose.close import assemble, rough_pose
 
@@ -82,7 +82,7 @@ def start_pose(m: Model) -> Pose:
 
 
 def pose_of(sol: Solution, t: float | None, step: int | None) -> Pose:
-    """The pose at time ``t`` (s; the nearest output) or at output ``step``; the first by default."""
+    """Return the pose at time ``t`` (s; the nearest output) or at output ``step``; the first by default."""
     m = sol.mechanism
     if t is not None and step is not None:
         raise ModelError(f"{m.name}: give a time t or a step to draw, not both")
@@ -115,14 +115,14 @@ class Tracks:
     """(T,) of each joint and driver that an event releases: whether that has happened."""
 
     def pose(self, step: int) -> Pose:
-        """At one of the times."""
+        """Return the pose at one of the times."""
         frames = {n: (float(v.x[step]), float(v.y[step]), float(v.theta[step])) for n, v in self.views.items()}
         released = {name: bool(gone[step]) for name, gone in self.released.items()}
         return Pose(frames, f"t = {self.times[step]:.4g} s", True, self.paths, self.travel, self.aside, released)
 
 
 def tracks_of(sol: Solution) -> Tracks:
-    """Tracks of a whole solution."""
+    """Return the tracks of a whole solution."""
     m = sol.mechanism
     views = {name: sol.body(name) for name in m.bodies}
     travel, aside, released = {}, {}, released_rows(sol)
@@ -141,12 +141,12 @@ def tracks_of(sol: Solution) -> Tracks:
 
 
 def _markers_of(m: Model) -> dict[str, Joint | Force]:
-    """All that has two markers. A force or contact may have the name of a joint, so theirs say what they are."""
+    """Return all that has two markers. Keys of forces and contacts say so, since joints may have the same names."""
     forces = {f"force {name}": force for name, force in m.forces.items()}
     return {**m.joints, **m.drivers, **forces, **{f"contact {name}": contact for name, contact in m.contacts.items()}}
 
 
 def _path(view: FrameView, marker: Marker) -> np.ndarray:
-    """(T, 2) of a marker, from the motion of its body's frame."""
+    """Return (T, 2) of a marker, from the motion of its body's frame."""
     c, s = np.cos(view.theta), np.sin(view.theta)
     return np.stack([view.x + c * marker.x - s * marker.y, view.y + s * marker.x + c * marker.y], axis=1)

@@ -1,9 +1,13 @@
-"""The skeleton: links by their joints, joints by the standard symbols, frames, centres of mass, traced points."""
+"""The skeleton: links by their joints, joints by the standard symbols, frames, centres of mass, traced points.
+
+Pictures of one motion share a :class:`Steady`: extent, size of the symbols, sides of ground's signs, turns of springs.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,19 +15,14 @@ import numpy as np
 from mbsd.base.arguments import switch
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
-from mbsd.drawing.canvas import Canvas
+from mbsd.drawing.canvas import Canvas, place_names
 from mbsd.drawing.carriers import GROUND, at_place, on_body
-from mbsd.drawing.inks import body_inks
-from mbsd.drawing.literal import literal
-from mbsd.drawing.look import AXIS_X, AXIS_Y, FAINT, INK, QUIET
-from mbsd.drawing.names import place_names
+from mbsd.drawing.look import AXIS_X, AXIS_Y, FAINT, INK, QUIET, body_inks, literal
 from mbsd.drawing.pose import Pose
+from mbsd.drawing.symbols.contacts import contact_reach, draw_contacts
+from mbsd.drawing.symbols.geometry import Place, free_side, reach, rounded
 from mbsd.drawing.symbols.joints import draw_joint
 from mbsd.drawing.symbols.loads import draw_force, force_reach
-from mbsd.drawing.symbols.outline import rounded
-from mbsd.drawing.symbols.place import Place, free_side
-from mbsd.drawing.symbols.reach import reach
-from mbsd.drawing.symbols.touching import contact_reach, draw_contacts
 from mbsd.drawing.symbols.wheels import rim_of, ring_gear
 from mbsd.model.body import Marker
 from mbsd.model.joint import Joint
@@ -32,6 +31,7 @@ from mbsd.pictures import Picture
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
 
 WIDTH, TALLEST, FLATTEST = 7.0, 7.0, 2.6
 """Width, largest and least height of a figure of our own (inches)."""
@@ -73,7 +73,7 @@ def draw(m: Model, pose: Pose, ax: Axes | None, frames: bool, names: bool) -> Pi
 
 
 def measure(m: Model, pose: Pose) -> tuple[np.ndarray, np.ndarray, float]:
-    """Lowest and highest x, y (m) of all that is drawn, and the unit of the symbols (m)."""
+    """Return lowest and highest x, y (m) of all that is drawn, and the unit of the symbols (m)."""
     points = {name: _points(m, pose, name) for name in m.bodies}
     wide = [reach(joint, pose) for joint in m.joints.values() if not pose.gone(joint.name)]
     loads = [force_reach(force, pose, list(m.joints.values())) for force in m.forces.values()]
@@ -86,7 +86,7 @@ def measure(m: Model, pose: Pose) -> tuple[np.ndarray, np.ndarray, float]:
 
 
 def measure_all(m: Model, poses: Sequence[Pose]) -> tuple[np.ndarray, np.ndarray, float]:
-    """The same over several poses, in symbols of one size."""
+    """Return the same over several poses, in symbols of one size."""
     lows, highs, _ = zip(*(measure(m, pose) for pose in poses), strict=True)
     low, high = np.min(lows, axis=0), np.max(highs, axis=0)
     lengths = [{name: _points(m, pose, name) for name in m.bodies} for pose in poses]
@@ -134,7 +134,7 @@ def draw_on(
 
 
 def steady_sides(m: Model, poses: Sequence[Pose], unit: float) -> dict[str, np.ndarray]:
-    """By joint, the unit direction of ground's sign that has room in all of these poses."""
+    """Return, by joint, the unit direction of ground's sign that has room in all of these poses."""
     leaving: dict[str, list[float]] = {}
     for pose in poses:
         points = {name: _points(m, pose, name) for name in m.bodies}
@@ -144,7 +144,7 @@ def steady_sides(m: Model, poses: Sequence[Pose], unit: float) -> dict[str, np.n
 
 
 def _directions(m: Model, pose: Pose, points: dict[str, np.ndarray], joint: Joint, unit: float) -> list[float]:
-    """Angles (rad) at which links leave the place where ground's sign goes; of a rod, the rod itself."""
+    """Return angles (rad) at which links leave the place where ground's sign goes; of a rod, the rod itself."""
     if "distance" in joint.kind.constraints and "ground" in joint.bodies:
         gap = pose.place(joint.j) - pose.place(joint.i)
         along = gap if joint.i.body.name == "ground" else -gap
@@ -153,7 +153,7 @@ def _directions(m: Model, pose: Pose, points: dict[str, np.ndarray], joint: Join
 
 
 def _points(m: Model, pose: Pose, name: str) -> np.ndarray:
-    """(k, 2) of all that a body carries: joints, traced points, the places where others slide on it."""
+    """Return (k, 2) of all that a body carries: joints, traced points, the places where others slide on it."""
     out: list[np.ndarray] = []
     for joint in (*m.joints.values(), *m.drivers.values()):
         if joint.kind.driven and joint.kind.angular:
@@ -188,7 +188,7 @@ def _alone(points: list[np.ndarray]) -> bool:
 
 
 def _unit(size: np.ndarray, points: dict[str, np.ndarray]) -> float:
-    """A 34th of the drawing, less where the links are shorter than four of them."""
+    """Return a 34th of the drawing, less where the links are shorter than four of them."""
     largest = float(size.max())
     lengths = [float(np.hypot(*np.ptp(p, axis=0))) for name, p in points.items() if len(p) > 1 and name != "ground"]
     lengths = [length for length in lengths if length > 1e-3 * largest]
@@ -199,7 +199,7 @@ def _unit(size: np.ndarray, points: dict[str, np.ndarray]) -> float:
 
 
 def _link(canvas: Canvas, m: Model, pose: Pose, name: str, points: np.ndarray, edge: str, frames: bool) -> None:
-    """A body: a rounded outline around what it carries, its centre of mass and its frame."""
+    """Draw a body: a rounded outline around what it carries, its centre of mass and its frame."""
     body = m.bodies[name]
     sliding = any(j.kind.pair == "guide" and j.j.body is body for j in m.joints.values())
     extent = float(np.hypot(*np.ptp(points, axis=0)))
@@ -213,7 +213,7 @@ def _link(canvas: Canvas, m: Model, pose: Pose, name: str, points: np.ndarray, e
 
 
 def _centre_of_mass(canvas: Canvas, centre: np.ndarray) -> None:
-    """The quartered circle."""
+    """Draw the quartered circle."""
     canvas.sign = "centre of mass"
     canvas.circle(centre, 0.42, order=5, width=0.9)
     for first in (0.0, math.pi):
@@ -224,7 +224,7 @@ def _centre_of_mass(canvas: Canvas, centre: np.ndarray) -> None:
 
 
 def _frame(canvas: Canvas, pose: Pose, name: str, length: float) -> None:
-    """A body's axes: x red, y green."""
+    """Draw a body's axes: x red, y green."""
     origin = pose.point(name, 0.0, 0.0)
     for tip, ink in (((1.0, 0.0), AXIS_X), ((0.0, 1.0), AXIS_Y)):
         end = origin + length * canvas.unit * (pose.point(name, *tip) - origin)
@@ -232,7 +232,7 @@ def _frame(canvas: Canvas, pose: Pose, name: str, length: float) -> None:
 
 
 def _leaving(m: Model, pose: Pose, points: dict[str, np.ndarray], j: Marker, unit: float) -> list[float]:
-    """Directions (rad) of the links that leave the pin, those of other joints there included."""
+    """Return directions (rad) of the links that leave the pin, those of other joints there included."""
     pin = pose.place(j)
     here = [joint for joint in m.joints.values() if np.hypot(*(pose.place(joint.j) - pin)) < 0.2 * unit]
     moving = {name: None for joint in here for name in joint.bodies if name != "ground"}
@@ -245,7 +245,7 @@ def _middle(points: np.ndarray) -> np.ndarray:
 
 
 def _axes(size: np.ndarray) -> Axes:
-    """Axes of a figure of our own, shaped like the drawing; it does not belong to pyplot."""
+    """Return axes of a new figure, shaped like the drawing; it does not belong to pyplot."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -257,7 +257,7 @@ def _axes(size: np.ndarray) -> Axes:
 
 
 def _finish(ax: Axes, low: np.ndarray, high: np.ndarray, name: str, pose: Pose) -> None:
-    """Equal axes in metres, quiet."""
+    """Set equal, quiet axes in metres, and the title."""
     ax.set_aspect("equal", adjustable="box")
     ax.set_xlim(low[0], high[0])
     ax.set_ylim(low[1], high[1])
@@ -270,3 +270,41 @@ def _finish(ax: Axes, low: np.ndarray, high: np.ndarray, name: str, pose: Pose) 
     ax.set_ylabel("y / m", color=QUIET, fontsize=8.5)
     title = name.replace("_", " ") + (f",  {pose.title}" if pose.title else "")
     ax.set_title(title, loc="left", color=INK, fontsize=11)
+
+
+@dataclass(frozen=True, eq=False)
+class Steady:
+    """Found from some poses of a motion, the first one first."""
+
+    low: np.ndarray
+    high: np.ndarray
+    """(2,) extent of the machine over the whole motion (m)."""
+    unit: float
+    """Unit of its symbols (m)."""
+    sides: dict[str, np.ndarray]
+    coils: dict[str, int]
+    wheels: dict[tuple[str, float], tuple[int, float]]
+    """Teeth and phase (rad) of gears in the first pose, by body and radius."""
+
+    def ready(self, canvas: Canvas, turned: Mapping[str, float]) -> None:
+        """Tell a canvas the turns of springs, and how gears stand whose bodies have turned by angles (rad)."""
+        canvas.coils.update(self.coils)
+        for (body, radius), (teeth, phase) in self.wheels.items():
+            canvas.turned[body, radius] = teeth, phase + teeth * turned[body]
+
+
+def steady_of(m: Model, poses: Sequence[Pose], colours: dict[str, str], recorder: type[Canvas]) -> Steady:
+    """Return the constants of these poses; ``recorder`` is a canvas that needs no axes."""
+    low, high, unit = measure_all(m, poses)
+    sides = steady_sides(m, poses, unit)
+    turns: dict[str, list[int]] = {}
+    wheels: dict[tuple[str, float], tuple[int, float]] = {}
+    for k, pose in enumerate(poses):
+        canvas = recorder(None, unit)
+        draw_on(canvas, m, pose, colours, False, sides)
+        for name, count in canvas.coils.items():
+            turns.setdefault(name, []).append(count)
+        if k == 0:
+            wheels = dict(canvas.wheels)
+    coils = {name: int(np.median(counts)) for name, counts in turns.items()}
+    return Steady(low, high, unit, sides, coils, wheels)

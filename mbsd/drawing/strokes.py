@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -77,40 +77,21 @@ class Recorder(Canvas):
     names: list[Label] = field(default_factory=list)
     """Each by itself, where ``labels`` has those that share a place as one."""
 
-    def line(
-        self, points: Sequence[Point] | Point, colour: str = INK, width: float = 1.4, order: float = 4, **more: Any
-    ) -> None:
-        """A polyline (m), kept."""
-        dash = more.get("linestyle", (0, ()))[1]
-        self._keep(np.asarray(points, float), False, colour, None, more.get("alpha", 1.0), width, order, dash)
-
-    def shape(
-        self,
-        points: Point,
-        edge: str = INK,
-        fill: str = PAPER,
-        width: float = 1.4,
-        order: float = 4,
-        alpha: float = 1.0,
-    ) -> None:
-        """A closed outline (m), kept."""
-        self._keep(np.asarray(points, float), True, edge, fill, alpha, width, order)
-
     def band(self, outer: Point, inner: Point, colour: str) -> None:
         """Keep the area between two outlines (m) as one outline with a seam, and both edges."""
         seam = np.vstack([outer, outer[:1], inner[::-1], inner[-1:]])
-        self._keep(seam, True, colour, colour, 0.12, 0.0, 1.69)
+        self._draw(seam, True, colour, colour, 0.12, 0.0, 1.69)
         for outline in (outer, inner):
-            self._keep(np.asarray(outline, float), True, colour, None, 1.0, 1.3, 1.7)
+            self._draw(np.asarray(outline, float), True, colour, None, 1.0, 1.3, 1.7)
 
     def label(self, text: str, anchor: Point, clearance: float, colour: str = INK, size: float = 10.0) -> None:
         """Ask for a name; its colour is kept as a role."""
         self.names.append(Label(text, anchor, clearance, _role(colour), size, self.carrier))
         super().label(text, anchor, clearance, _role(colour), size)
 
-    def _keep(
+    def _draw(
         self,
-        points: np.ndarray,
+        path: Point,
         closed: bool,
         ink: str,
         fill: str | None,
@@ -122,12 +103,12 @@ class Recorder(Canvas):
         role = None if fill is None else _role(fill)
         dashes = tuple(map(float, dash))
         self.strokes.append(
-            Stroke(points, closed, _role(ink), role, alpha, width, order, dashes, self.sign, self.carrier)
+            Stroke(path, closed, _role(ink), role, alpha, width, order, dashes, self.sign, self.carrier)
         )
 
 
 def strokes_of(solution: Solution, steps: Sequence[int]) -> list[Strokes]:
-    """The skeleton at output ``steps``, in symbols of one size."""
+    """Return the skeleton at output ``steps``, in symbols of one size."""
     m = solution.mechanism
     colours = {name: f"body:{name}" for name in m.bodies if name != "ground"}
     poses = [pose_of(solution, None, int(step)) for step in steps]
@@ -141,7 +122,7 @@ def strokes_of(solution: Solution, steps: Sequence[int]) -> list[Strokes]:
 
 
 def moved(first: Strokes, other: Strokes) -> list[Stroke]:
-    """The strokes of ``other`` that are elsewhere than in ``first``."""
+    """Return the strokes of ``other`` that are elsewhere than in ``first``."""
     slack = 1e-6 * first.unit
     pairs = itertools.zip_longest(first.strokes, other.strokes)
     return [b for a, b in pairs if b is not None and (a is None or _differ(a.points, b.points, slack))]

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.drawing.literal import literal
-from mbsd.drawing.look import FAINT, INK, PALETTE, QUIET, WRONG
+from mbsd.base.quantity import counted
+from mbsd.drawing.look import FAINT, INK, PALETTE, QUIET, WRONG, literal
 from mbsd.pictures import Picture
 
 MOST_BARS = 12
@@ -78,7 +78,7 @@ def _line(ax: Any, x: float, name: str, colour: str, style: str) -> None:
 
 
 def _title(t: Any) -> str:
-    said = f"{len(t)} machines, standard deviation {t.std:.3g}"
+    said = f"{counted(len(t), 'machine')}, standard deviation {t.std:.3g}"
     failed = f", {len(t.failed)} failed" if len(t.failed) else ""
     return said + failed + ("" if t.yields is None else f", {t.yields.part:.2%} within limits")
 

@@ -40,7 +40,7 @@ Changes = dict[str, dict[str, np.ndarray]]
 
 
 def differences(mechanisms: Sequence[Mechanism]) -> Changes:
-    """How the others differ from the first. Raises MoreThanNumbers where that is more than numbers, or nothing."""
+    """Return how the others differ from the first. Raises MoreThanNumbers unless that is in numbers alone."""
     first = mechanisms[0]
     numbers = _Numbers(first)
     values = np.array([numbers.values(m) for m in mechanisms])
@@ -75,14 +75,14 @@ class _Numbers:
         self.parts = _parts(content)[1]
 
     def values(self, m: Mechanism) -> np.ndarray:
-        """(N,) numbers of another. Raises MoreThanNumbers where it has other bytes besides."""
+        """Return (N,) numbers of another. Raises MoreThanNumbers where it has other bytes besides."""
         content = np.frombuffer(_bytes(m), np.uint8)
         if len(content) != len(self.rest) or not np.array_equal(content[self.rest], self.fixed):
             raise MoreThanNumbers(OTHER)
         return content[self.at].reshape(-1, 8).view(">f8")[:, 0].astype(float)
 
     def values_changed(self, m: Mechanism) -> np.ndarray:
-        """(N,) the same of one that was changed, in which other things may be shared. Raises MoreThanNumbers."""
+        """Return (N,) the same of one that was changed, in which other things may be shared. Raises MoreThanNumbers."""
         values, rest = _parts(_bytes(m))
         if len(values) != len(self.at) // 8 or rest != self.parts:
             raise MoreThanNumbers(ELSEWHERE)
@@ -90,7 +90,7 @@ class _Numbers:
 
 
 def _parts(content: bytes) -> tuple[np.ndarray, list[Any]]:
-    """Numbers, and all else but where what comes again stands."""
+    """Return numbers, and all else but where what comes again stands."""
     values, rest = [], []
     for code, value, _ in pickletools.genops(content):
         if code.name == "BINFLOAT":
@@ -130,7 +130,7 @@ def _known(m: Mechanism) -> Iterator[_Number]:
 def _moved(
     number: _Number, work: Mechanism, numbers: _Numbers, values: np.ndarray, left: set[int]
 ) -> tuple[int | None, set[int]]:
-    """The place of a number that differs, and all that move with it; None if it is none of ``left``."""
+    """Return the place of a number that differs, and all that move with it; None if it is none of ``left``."""
     for place in sorted(left):
         if values[0, place] != number.value:
             continue

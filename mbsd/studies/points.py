@@ -21,7 +21,7 @@ Point = dict[str, Any]
 
 
 def points_of(grid: Any) -> list[Point]:
-    """The points of ``grid`` in order; of a product the last name varies fastest. Raises ModelError if it is none."""
+    """Return the points of ``grid`` in order; in a product the last name varies fastest. Raises ModelError."""
     if isinstance(grid, Mapping):
         return _product(grid)
     rows = grid.to_dict("records") if hasattr(grid, "to_dict") and hasattr(grid, "columns") else grid
@@ -65,7 +65,7 @@ def _product(grid: Mapping[str, Any]) -> list[Point]:
 
 
 def _listed(name: str, values: Any) -> Iterable[Any]:
-    """A number or a text is one value."""
+    """Return a number or a text is one value."""
     if isinstance(values, str | bool | int | float) or values is None or getattr(values, "shape", None) == ():
         return [values]
     if isinstance(values, Mapping) or not isinstance(values, Iterable):
@@ -74,7 +74,7 @@ def _listed(name: str, values: Any) -> Iterable[Any]:
 
 
 def _length(values: Iterable[Any]) -> int:
-    """How many there are, at least."""
+    """Return how many there are, at least."""
     if not isinstance(values, Sized):
         return 1
     try:
@@ -98,7 +98,7 @@ def _name(name: Any) -> str:
 
 
 def _value(name: Any, value: Any) -> Any:
-    """Numbers, texts and tuples of these, of Python's own types, so that equal points have one key."""
+    """Return numbers, texts and tuples of these, of Python's own types, so that equal points have one key."""
     if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, list | tuple):

@@ -1,4 +1,7 @@
-"""How far a study is: a bar where rich is installed and a terminal listens, a line now and then everywhere else."""
+"""Progress of a study, and its messages about workers.
+
+Progress is a bar where rich is installed and a terminal listens, a line now and then everywhere else.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,10 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+
+from mbsd.base.errors import ModelError
+from mbsd.base.warning import warn
+from mbsd.dealing.manner import Voice
 
 SHORTEST, LONGEST = 5.0, 60.0
 """Seconds between two lines; the gap grows with the time that has passed."""
@@ -79,8 +86,34 @@ class _Lines:
 
 
 def duration(seconds: float) -> str:
-    """A time for people: ``12 s``, ``3 min 20 s``, ``2 h 05 min``."""
+    """Return a time for people: ``12 s``, ``3 min 20 s``, ``2 h 05 min``."""
     whole = round(seconds)
     if whole < 60:
         return f"{whole} s"
     return f"{whole // 60} min {whole % 60:02d} s" if whole < 3600 else f"{whole // 3600} h {whole // 60 % 60:02d} min"
+
+
+_GONE = (
+    "the scheduler {where} has gone; start it again (make scheduler). What is computed is kept where there is a "
+    "folder, the same call goes on from there"
+)
+_LEFT_OUT = "worker {worker} is left out: {reason}; others do its work"
+
+VOICE = Voice(
+    say=lambda text: None,  # a bar shows how far the study is
+    warn=lambda text: warn(f"study: {text}", UserWarning),
+    error=lambda text: ModelError(f"study: {text}"),
+    duration=duration,
+    no_scheduler="no scheduler answers at {where} ({problem}); start one (docs/cluster.md) or leave client out",
+    gone=_GONE,
+    silent=_GONE,
+    nobody=(
+        "no worker of {where} can compute it{shown}; start workers with the same lock file (docs/cluster.md). What is "
+        "computed is kept"
+    ),
+    without="{where} has no worker that can compute it",
+    one_comes="one is given {time} to come",
+    lied=_LEFT_OUT,
+    failed="worker {worker}: {reason}",
+    left_out=_LEFT_OUT,
+)

@@ -45,14 +45,14 @@ class Simulated(Suggesting):
     options: Mapping[str, float] = field(default_factory=dict)
 
     def __call__(self, m: Mechanism) -> dict[str, float]:
-        """Numbers of one mechanism. Raises ModelError with the reason why it has none."""
+        """Return numbers of one mechanism. Raises ModelError with the reason why it has none."""
         [(values, reason)] = self.of_all([m])
         if values is None:
             raise ModelError(f"{m.name}: {reason}")
         return values
 
     def of_all(self, mechanisms: Sequence[Mechanism]) -> list[Numbers]:
-        """Numbers of each mechanism, or why it has none: the same whichever others are beside it."""
+        """Return numbers of each mechanism, or why it has none: the same whichever others are beside it."""
         rows: dict[int, Numbers] = {
             number: (None, f"build gives {shown(m)}; it must give a Mechanism")
             for number, m in enumerate(mechanisms)
@@ -64,7 +64,7 @@ class Simulated(Suggesting):
         return [rows[number] for number in range(len(mechanisms))]
 
     def way(self, mechanisms: Sequence[Mechanism]) -> str:
-        """How mechanisms like these are simulated, in words."""
+        """Return how mechanisms like these are simulated, in words."""
         runs = []
         for numbers in alike(mechanisms):
             try:
@@ -108,7 +108,7 @@ class Simulated(Suggesting):
 
 
 def _designs(mechanisms: Sequence[Mechanism], fewest: int) -> Designs:
-    """Mechanisms of the same things by their numbers, where these are known ones alone; else each as it was built."""
+    """Return mechanisms by their numbers, if they differ in known numbers alone; else each as it was built."""
     try:
         if len(mechanisms) < fewest:
             raise MoreThanNumbers(FEW)
@@ -118,7 +118,7 @@ def _designs(mechanisms: Sequence[Mechanism], fewest: int) -> Designs:
 
 
 def alike(mechanisms: Sequence[Mechanism]) -> list[list[int]]:
-    """Numbers of the mechanisms that have the same things by name."""
+    """Return numbers of the mechanisms that have the same things by name."""
     out: dict[Any, list[int]] = {}
     for number, m in enumerate(mechanisms):
         if not isinstance(m, Model):

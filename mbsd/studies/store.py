@@ -51,7 +51,7 @@ class Store:
                     file.unlink(missing_ok=True)
 
     def depend(self, inputs: Inputs) -> None:
-        """From now on results depend on these inputs, too."""
+        """Add inputs on which results depend from now on."""
         self.inputs = self.inputs.merged(inputs)
 
     def keep(self, key: str, result: Result) -> None:

@@ -23,17 +23,16 @@ from mbsd.dealing.connection import connected
 from mbsd.dependencies.recorder import Recorder
 from mbsd.mechanism import Mechanism
 from mbsd.model.mechanism import Model
-from mbsd.studies.dealt import Deals, by_cluster, by_here, by_processes, manner_of
-from mbsd.studies.identity.content import Content, own_sources
-from mbsd.studies.identity.depends import StudyPlaces, loaded_inputs, root_of
+from mbsd.studies.content import Content, own_sources
+from mbsd.studies.inputs import StudyPlaces, loaded_inputs, root_of
+from mbsd.studies.orders import Deals, by_cluster, by_here, by_processes, manner_of
 from mbsd.studies.points import Point, points_of, refuse_names
+from mbsd.studies.progress import VOICE
 from mbsd.studies.progress import progress as reported
-from mbsd.studies.sent import bytes_of
 from mbsd.studies.simulated import Simulated
 from mbsd.studies.store import Store
 from mbsd.studies.table import pandas_here, refuse_format, refuse_taken, save_table, table_of
-from mbsd.studies.voice import VOICE
-from mbsd.studies.work import Order, Result
+from mbsd.studies.work import Order, Result, bytes_of
 
 if TYPE_CHECKING:
     import pandas
@@ -93,9 +92,7 @@ def study(
     content = Content(folder is not None, places.root).add(build).add(measure)
     store = None if folder is None else _store(folder, content, places)
     keys = [_key_of(point) for point in points] if store else []
-    results: dict[int, Result] = (
-        {} if store is None else {n: store.known[k] for n, k in enumerate(keys) if k in store.known}
-    )
+    results: dict[int, Result] = {n: store.known[k] for n, k in enumerate(keys) if k in store.known} if store else {}
     todo = {number: point for number, point in enumerate(points) if number not in results}
     if todo and isinstance(measure, Simulated):
         _refuse_measure(build, measure, todo.values())
@@ -145,7 +142,7 @@ def _refuse_measure(build: Callable[..., Mechanism], measure: Simulated, points:
 
 
 def _way(build: Callable[..., Mechanism], measure: Simulated, points: Sequence[Point]) -> str:
-    """How points like some of these are simulated."""
+    """Return how points like some of these are simulated, in words."""
     if not points:
         return "there are no points"
     some = []
@@ -158,12 +155,12 @@ def _way(build: Callable[..., Mechanism], measure: Simulated, points: Sequence[P
 
 
 def _index_of(grid: Any) -> Any:
-    """The rows of a DataFrame keep their names."""
+    """Return the rows of a DataFrame keep their names."""
     return grid.index if hasattr(grid, "to_dict") and hasattr(grid, "columns") else None
 
 
 def _key_of(point: Point) -> str:
-    """Names in any order are one point."""
+    """Return names in any order are one point."""
     return Content().add(dict(sorted(point.items()))).hexdigest()[:32]
 
 
@@ -174,7 +171,7 @@ def _store(folder: str | os.PathLike[str], content: Content, places: StudyPlaces
 
 
 def _client(client: Any) -> Any:
-    """A connection of our own is closed at the end, the user's stays."""
+    """Return a connection of our own is closed at the end, the user's stays."""
     if client is None or hasattr(client, "scheduler_info"):
         return nullcontext(client)
     if not isinstance(client, str):
@@ -192,7 +189,7 @@ def _deals(
     points: Sequence[Point],
     todo: int,
 ) -> Deals:
-    """Who computes ``todo`` of the points; ``places`` name what build and measure read, if that is recorded."""
+    """Return who computes ``todo`` of the points; ``places`` name inputs of build and measure, if recorded."""
     count = cores() if processes is None else processes
     if client is None and count < 1:
         raise ModelError(f"study: processes is {count}; it must be 1 at least")

@@ -21,7 +21,7 @@ SUFFIXES = (".parquet", ".csv")
 
 
 def pandas_here() -> Any:
-    """The package; raises ModelError naming the extra that brings it."""
+    """Return the package; raises ModelError naming the extra that brings it."""
     try:
         import pandas
     except ImportError as error:
@@ -30,7 +30,7 @@ def pandas_here() -> Any:
 
 
 def table_of(points: Sequence[Point], results: Sequence[Result], index: Any = None) -> pandas.DataFrame:
-    """One row a point: its values, what was measured (NaN where it failed), and why it failed (else missing).
+    """Return one row a point: its values, its measures (NaN if it failed), and why it failed (else missing).
 
     Raises ModelError if measure uses a name that a point or the reason has.
     """

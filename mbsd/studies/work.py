@@ -1,15 +1,21 @@
-"""Work of one process: it builds and measures a chunk of points, whatever goes wrong with one of them."""
+"""Work of one process: it builds and measures a chunk of points, whatever goes wrong with one of them.
+
+Build and measure travel as bytes that need no file of the user where they are read.
+"""
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import importlib
+import io
 import sys
 import time
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from pathlib import Path
+from types import ModuleType
 from typing import Any, NamedTuple
 
 from mbsd.base.arguments import described
@@ -19,7 +25,7 @@ from mbsd.dependencies.inputs import Inputs
 from mbsd.dependencies.installed import is_installed
 from mbsd.dependencies.recorder import Recorder
 from mbsd.dependencies.recording import recording
-from mbsd.studies.identity.depends import StudyPlaces, is_of_mbsd, recorded_inputs
+from mbsd.studies.inputs import StudyPlaces, is_of_mbsd, recorded_inputs
 from mbsd.studies.points import Point
 from mbsd.studies.simulated import Simulated
 
@@ -36,7 +42,7 @@ class Result(NamedTuple):
     """Whether the machine failed, not the point."""
 
 
-class Done(NamedTuple):
+class Chunk(NamedTuple):
     """A chunk's results in order, the seconds it took, and all that its process has read for this study so far."""
 
     results: list[Result]
@@ -55,7 +61,7 @@ class Order(NamedTuple):
     """Another text for each call of ``study``, between which modules of the user may have changed."""
 
     def recorder(self) -> Recorder | None:
-        """Record of what build and measure read, if that matters."""
+        """Return a record of what build and measure read; None if nothing is kept."""
         return None if self.root is None else Recorder(StudyPlaces(Path(self.root)))
 
 
@@ -97,7 +103,7 @@ def loaded(order: Order) -> Work:
 
 
 def _forget_modules() -> None:
-    """Modules of the user that an earlier study has loaded are loaded anew: their files may have changed."""
+    """Forget modules of the user that an earlier study loaded: their files may have changed."""
     if not _before:
         _before.update(sys.modules)
     importlib.invalidate_caches()
@@ -107,14 +113,14 @@ def _forget_modules() -> None:
             del sys.modules[name]
 
 
-def chunk(order: Order, points: Sequence[Point]) -> Done:
+def chunk(order: Order, points: Sequence[Point]) -> Chunk:
     """Build and measure every point, with functions from their bytes."""
     return chunk_of(*loaded(order), points)
 
 
 def chunk_of(
     build: Callable[..., Any], measure: Callable[[Any], Any], recorder: Recorder | None, points: Sequence[Point]
-) -> Done:
+) -> Chunk:
     """Build and measure every point. Warnings of the single points are not shown."""
     started = time.perf_counter()
     with warnings.catch_warnings(), recording(recorder) if recorder else nullcontext():
@@ -124,7 +130,7 @@ def chunk_of(
         else:
             results = [result_of(build, measure, point) for point in points]
     inputs = recorded_inputs(recorder) if recorder else Inputs()
-    return Done(results, time.perf_counter() - started, inputs)
+    return Chunk(results, time.perf_counter() - started, inputs)
 
 
 def _together(build: Callable[..., Any], measure: Simulated, points: Sequence[Point]) -> list[Result]:
@@ -143,7 +149,7 @@ def _together(build: Callable[..., Any], measure: Simulated, points: Sequence[Po
 
 
 def result_of(build: Callable[..., Any], measure: Callable[[Any], Any], point: Point) -> Result:
-    """One point; whatever build or measure raise is its reason."""
+    """Return the result of one point; whatever build or measure raise is its reason."""
     try:
         return Result(_numbers(measure(build(**point))))
     except Exception as error:
@@ -161,3 +167,37 @@ def _numbers(measured: Any) -> dict[str, float | int | bool]:
             raise ModelError(f"measure gives {shown(value)} as {shown(name)}; it must be a number under a name")
         out[name] = value
     return out
+
+
+def bytes_of(build: Any, measure: Any, modules: dict[str, ModuleType]) -> bytes:
+    """Build and measure with what they use of ``modules``. Raises ModelError where that cannot be sent."""
+    try:
+        import cloudpickle
+    except ImportError as error:
+        raise ModelError("study needs cloudpickle: install mbsd[study]") from error
+    by_value = [module for name, module in modules.items() if name != "__main__"]
+
+    class Pickler(cloudpickle.CloudPickler):
+        """Takes cached functions along, too, with an empty cache; by itself pickle names their module."""
+
+        def reducer_override(self, obj: Any) -> Any:
+            wrapped = getattr(obj, "__wrapped__", None)
+            if type(obj) is functools._lru_cache_wrapper and getattr(wrapped, "__module__", None) in modules:  # pyright: ignore[reportAttributeAccessIssue]
+                return _cached, (wrapped, obj.cache_parameters())
+            return super().reducer_override(obj)
+
+    for module in by_value:
+        cloudpickle.register_pickle_by_value(module)
+    try:
+        content = io.BytesIO()
+        Pickler(content).dump((build, measure))
+        return content.getvalue()
+    except Exception as error:
+        raise ModelError(f"study: build or measure cannot be sent to another process: {error}") from error
+    finally:
+        for module in by_value:
+            cloudpickle.unregister_pickle_by_value(module)
+
+
+def _cached(function: Callable[..., Any], parameters: dict[str, Any]) -> Callable[..., Any]:
+    return functools.lru_cache(**parameters)(function)

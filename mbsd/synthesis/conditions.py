@@ -29,7 +29,7 @@ class Pin(NamedTuple):
 
 
 def pins(m: Model, packed: Packed) -> list[Pin]:
-    """The pins at which a transmission angle is defined."""
+    """Return the pins at which a transmission angle is defined."""
     moved = {body for driver in m.drivers.values() for body in driver.bodies} | {"ground"}
     pins_between = []
     places = _pin_markers(m, packed)
@@ -45,7 +45,7 @@ def pins(m: Model, packed: Packed) -> list[Pin]:
 
 
 def transmission_angles(pin: Pin, arms: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """(n, T) transmission angles (rad) of designs with marker places ``arms`` (n, markers, 2) (m, in their bodies).
+    """Return (n, T) transmission angles (rad) of designs with marker places ``arms`` (n, markers, 2) (m).
 
     ``first``, ``second``: (n, T) angles of the pin's bodies.
     """
@@ -57,7 +57,7 @@ def transmission_angles(pin: Pin, arms: np.ndarray, first: np.ndarray, second: n
 
 
 def four_bar(m: Model, packed: Packed) -> list[tuple[int, int]]:
-    """Pairs of marker numbers whose distances are the four lengths, ground's among them.
+    """Return pairs of marker numbers whose distances are the four lengths, ground's among them.
 
     Raises ModelError where the mechanism is no four-bar of pins.
     """
@@ -65,14 +65,14 @@ def four_bar(m: Model, packed: Packed) -> list[tuple[int, int]]:
     loops = {body: [number for _, number in markers] for body, markers in places.items() if markers}
     if len(loops) != 4 or len(_revolutes(m)) != 4 or any(len(numbers) != 2 for numbers in loops.values()):
         raise ModelError(
-            f"{m.name}: fit_path: Grashof's condition is one of a four-bar of four pins, and this is none; leave it "
-            "out: a design counts only if its links close over the whole motion"
+            f"{m.name}: fit_path: grashof=True needs a four-bar of four pins, and this is another mechanism; leave it "
+            "out, since a design counts only if its links close over the whole motion"
         )
     return [(numbers[0], numbers[1]) for numbers in loops.values()]
 
 
 def grashof_excess(lengths: np.ndarray) -> np.ndarray:
-    """(n,) s + l - p - q of lengths (n, 4), relative to their sum; not positive where Grashof's condition holds."""
+    """Return (n,) s + l - p - q of lengths (n, 4), relative to their sum; positive where Grashof's condition fails."""
     ordered = np.sort(lengths, axis=1)
     return (ordered[:, 0] + ordered[:, 3] - ordered[:, 1] - ordered[:, 2]) / ordered.sum(axis=1)
 
@@ -82,7 +82,7 @@ def _revolutes(m: Model) -> Sequence[Joint]:
 
 
 def _pin_markers(m: Model, packed: Packed) -> dict[str, list[tuple[str, int]]]:
-    """By body, its revolute joints and the numbers of their markers on it."""
+    """Return, by body, its revolute joints and the numbers of their markers on it."""
     out: dict[str, list[tuple[str, int]]] = {body: [] for body in m.bodies}
     for joint, pair in zip(packed.joints, packed.markers, strict=True):
         if joint.kind.pair == "pin":

@@ -1,29 +1,40 @@
-"""The paths of many designs of one mechanism: all at once in closed form where that serves, else one by one.
+"""The paths of many designs of one mechanism, all at once in closed form where possible, and their tangents.
 
 A design is a vector of the numbers that vary. It is either the mechanism itself with other lengths and places, or what
 a function of the author builds from them; the latter is solved with the others as long as only places of markers, of
-the traced point and lengths of rods differ.
+the traced point and lengths of rods differ. Other designs are swept one by one; how the path of one of them changes
+with its numbers follows from the differentiated closure, without another sweep:
+
+    J q' = -dPhi/dp;   the point and the angles follow from q'
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import MechanismError
+from mbsd.derivatives.driven.tangents import Inverse
+from mbsd.derivatives.numbers.terms import Along, terms_of
+from mbsd.derivatives.numbers.variants import SECOND, TINY, Variation
 from mbsd.kinematics.batch import parameters
 from mbsd.kinematics.design_sweeps import DesignSweeps, Moved, in_closed_form
 from mbsd.kinematics.march import kinematics_at
+from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.prepared import Prepared, prepare
+from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model
-from mbsd.numbers.names import Number, changed
-from mbsd.synthesis.built import built
+from mbsd.numbers.names import Number, changed, numbers_named
 from mbsd.synthesis.conditions import Pin, four_bar, grashof_excess, pins, transmission_angles
-from mbsd.synthesis.path_tangents import path_of, tangents_of_path
-from mbsd.synthesis.varied import Varied
+from mbsd.synthesis.variables import Varied, built, numbers_of_build
+
+if TYPE_CHECKING:
+    from mbsd.synthesis.variables import Varied, numbers_of_build
+
 
 Build = Callable[..., Model]
 KEPT = 100
@@ -44,7 +55,7 @@ class Paths:
     """(n,) by how much Grashof's inequality is missed, relative to the sum of the lengths; 0 where not asked for."""
 
     def parts(self) -> tuple[np.ndarray, ...]:
-        """All of it."""
+        """Return all four arrays."""
         return self.path, self.closes, self.transmission, self.excess
 
 
@@ -72,7 +83,7 @@ class Designs:
         self._solved: dict[tuple[bytes, int], tuple[Model, Prepared, np.ndarray]] = {}
 
     def __call__(self, x: np.ndarray, fine: bool = False, threads: int | None = None) -> Paths:
-        """Paths of designs x (n, k)."""
+        """Return paths of designs x (n, k)."""
         self.evaluations += len(x)
         if not self.at_once:
             return self._judged(x, *self._one_by_one(x, self.grids[fine]))
@@ -82,8 +93,8 @@ class Designs:
         swept = self._sweeps[fine](values, threads)
         return self._judged(x, swept.points[self.trace], swept.angles, swept.closes)
 
-    def beside(self, x: np.ndarray, steps: np.ndarray, fine: bool) -> Paths:
-        """Paths (n k) of designs x (n, k) of which one number after the other goes a step (n, k) on.
+    def neighbours(self, x: np.ndarray, steps: np.ndarray, fine: bool) -> Paths:
+        """Return paths (n k) of designs x (n, k) of which one number after the other goes a step (n, k) on.
 
         They go along the exact tangents of the paths of x: nothing is swept but x.
         """
@@ -107,7 +118,7 @@ class Designs:
         return self._judged((x[:, None] + steps[:, :, None] * np.eye(k)).reshape(n * k, k), paths, turned, closes)
 
     def _judged(self, x: np.ndarray, path: np.ndarray, angles: dict[str, np.ndarray], closes: np.ndarray) -> Paths:
-        """Paths of designs x (n, k), and how they meet the conditions."""
+        """Return paths of designs x (n, k), and how they meet the conditions."""
         values, moved = self.changes(x) if self.pins or self.links else (np.zeros((len(x), 0)), [])
         arms = np.tile(self.ready.packed.system.marker_arm, (len(x), 1, 1))
         for column, change in enumerate(moved):
@@ -125,7 +136,7 @@ class Designs:
         return Paths(path, closes, transmission, excess)
 
     def model(self, x: np.ndarray) -> Model:
-        """The mechanism of one design x (k,). Raises what the author's function raises."""
+        """Return the mechanism of one design x (k,). Raises what the author's function raises."""
         values = self.varied.values(x)
         if self.build is None:
             return changed(self.m, values)
@@ -145,7 +156,7 @@ class Designs:
         return out
 
     def changes(self, x: np.ndarray) -> tuple[np.ndarray, list[Moved]]:
-        """(n, p) differences from the mechanism itself, and what each moves."""
+        """Return (n, p) differences from the mechanism itself, and what each moves."""
         packed = self.ready.packed
         if self.build is not None:
             rows = [self._places(self.model(values)) for values in x]
@@ -166,7 +177,7 @@ class Designs:
         return parameters(self.m, packed, lengths, places)
 
     def _places(self, m: Model) -> np.ndarray:
-        """Places of the markers of all joints and traces, and lengths of rods, as one vector (p,)."""
+        """Return places of the markers of all joints and traces, and lengths of rods, as one vector (p,)."""
         joints = [*m.joints.values(), *m.drivers.values()]
         markers = [marker for joint in joints for marker in (joint.i, joint.j)]
         rods = [
@@ -182,12 +193,12 @@ class Designs:
         """Return True if the design x (k,) is the mechanism itself but for places and rods."""
         own, other = self.ready.packed, pack(self.model(x))
         other.settle_laws(float(self.grids[True][0]), float(self.grids[True][-1]))
-        return _numbers(own, self.grids[True]) == _numbers(other, self.grids[True]) and list(own.body_names) == list(
-            other.body_names
-        )
+        if list(own.body_names) != list(other.body_names):
+            return False
+        return _fixed_numbers(own, self.grids[True]) == _fixed_numbers(other, self.grids[True])
 
     def solved(self, x: np.ndarray, grid: np.ndarray) -> tuple[Model, Prepared, np.ndarray]:
-        """The mechanism of one design x (k,), made ready, and its poses (T, nb, 3); the last ones are kept."""
+        """Return the mechanism of one design x (k,), made ready, and its poses (T, nb, 3); the last ones are kept."""
         key = x.tobytes(), len(grid)
         if key not in self._solved:
             m = self.model(x)
@@ -215,10 +226,53 @@ def _unmoved(m: Model, value: float) -> None:
     """Leave the model; designs are moved as vectors."""
 
 
-def _numbers(packed: Packed, grid: np.ndarray) -> tuple[bytes, ...]:
-    """All of a mechanism but places of markers, lengths of rods, masses and forces."""
+def _fixed_numbers(packed: Packed, grid: np.ndarray) -> tuple[bytes, ...]:
+    """Return all of a mechanism but places of markers, lengths of rods, masses and forces."""
     system = packed.system
     axes = system.marker_axis[: 2 * len(packed.joints)]
     kept = (axes, system.angle_offset, system.special, system.numbers, system.point, system.angle, system.slot)
     tables = (*kept, system.along, system.distance, packed.markers, system.marker_body[: len(axes)])
     return (*(np.ascontiguousarray(part).tobytes() for part in tables), packed.drives(grid).tobytes())
+
+
+def path_of(packed: Packed, marker: Marker, q: np.ndarray) -> np.ndarray:
+    """Return (T, 2) of a point at poses q (T, nb, 3)."""
+    body = packed.body_names.index(marker.body.name)
+    x0, y0 = np.array([marker.x, marker.y]) - packed.com[body]
+    c, s = np.cos(q[:, body, 2]), np.sin(q[:, body, 2])
+    return q[:, body, :2] + np.column_stack([c * x0 - s * y0, s * x0 + c * y0])
+
+
+def tangents_of_path(designs: Designs, x: np.ndarray, grid: np.ndarray) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Return derivatives of a design x (k,) by its numbers: of the point (k, T, 2) and, by body, of angles (k, T)."""
+    m, ready, q = designs.solved(x, grid)
+    packed, span = ready.packed, (float(grid[0]), float(grid[-1]))
+    terms = terms_of(packed, span, loads=False)
+    flat = np.ascontiguousarray(q.reshape(len(grid), -1))
+    still = np.zeros_like(flat)
+    along = Along(grid, flat, still, still, np.zeros((len(grid), len(packed.ws.phi))))
+    inverse = Inverse(terms, along, bool(ready.mobility.redundant_rows))
+    variation = Variation(m, terms, span, lambda m, packed: assemble(m, packed, span[0]), loads=False)
+    paths = np.zeros((len(x), len(grid), 2))
+    angles = {body: np.zeros((len(x), len(grid))) for body in designs.turned}
+    for k, number in enumerate(_numbers(designs, m, x)):
+        variants = variation.of(number, SECOND, TINY)
+        slope = inverse.solved(-variants.slope(lambda variant: variant.terms.rows(along)[0]), number.name, 1e-6)
+        for weight, variant in zip(variants.weights, variants.variants, strict=True):
+            moved = (flat + variant.offset * variants.step * slope).reshape(q.shape)
+            paths[k] += weight / variants.step * path_of(variant.terms.packed, variant.traces[designs.trace], moved)
+        for body, rows in angles.items():
+            rows[k] = slope[:, 3 * packed.body_names.index(body) + 2]
+    return paths, angles
+
+
+def _numbers(designs: Designs, m: Model, x: np.ndarray) -> list[Number]:
+    """Return the numbers of a design as those of its mechanism, or of the author's function."""
+    varied = designs.varied
+    if designs.build is None:
+        names = []
+        for name, _, single in varied.columns():
+            names += [name] if single else [f"{name}.x", f"{name}.y"]
+        return numbers_named(m, names)
+    names = [f"{name} {k}" for name, part, _ in varied.columns() for k in range(part.start, part.stop)]
+    return numbers_of_build(names, x, varied.high - varied.low, designs.model)

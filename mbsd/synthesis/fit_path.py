@@ -12,13 +12,13 @@ import numpy as np
 from mbsd.base.arguments import checked, finite_number, number_array, switch, users_progress, whole_number
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import Suggesting, no_such, shown
+from mbsd.base.quantity import counted
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model, Start, new_name, own_body
-from mbsd.synthesis.built import refuse_build
 from mbsd.synthesis.designs import Build, Designs
 from mbsd.synthesis.search import Search
 from mbsd.synthesis.target import Target
-from mbsd.synthesis.varied import Value, refuse_names, varied
+from mbsd.synthesis.variables import Value, refuse_build, refuse_names, varied
 
 COARSE, FINE = 120, 360
 """Steps of a motion in the search and in the fit."""
@@ -132,16 +132,9 @@ def fit_path(
     limit = finite_number(f"{m.name}: fit_path: least_transmission (rad)", least_transmission)
     if not 0 <= limit < np.pi / 2:
         raise ModelError(f"{m.name}: fit_path: least_transmission is {limit:g} rad; it must be from 0 to below pi/2")
-    coarse = np.linspace(fine[0], fine[-1], min(COARSE, len(fine) - 1) + 1)
-    grids = {True: fine, False: coarse}
+    grids = {True: fine, False: np.linspace(fine[0], fine[-1], min(COARSE, len(fine) - 1) + 1)}
     designs = Designs(m, given, build, trace, grids, switch(f"{m.name}: fit_path: grashof", grashof))
-    target = Target(
-        target_points, _times(m, times, len(target_points)), switch(f"{m.name}: fit_path: closed", closed),
-        _returns(m, fine), (float(fine[0]), float(fine[-1])),
-        switch(f"{m.name}: fit_path: ordered", ordered),
-    )  # fmt: skip
-    if target.ordered and target.times is not None:
-        raise ModelError(f"{m.name}: fit_path: with times the order of the points is theirs; leave out ordered=True")
+    target = _target(m, target_points, times, closed, ordered, fine)
     shifts = switch(f"{m.name}: fit_path: free_start", free_start)
     if shifts and target.times is None:
         raise ModelError(f"{m.name}: fit_path: free_start adds a time to those that are given; give times=, too")
@@ -156,7 +149,7 @@ def fit_path(
 
 
 def _result(search: Search, trace: str, x: np.ndarray, ends: list[float]) -> PathFit:
-    """The fitted mechanism, swept once more by itself: what is reported is its own motion."""
+    """Return the fitted mechanism, swept once more by itself: what is reported is its own motion."""
     designs, target = search.designs, search.target
     shift = float(x[-1]) if search.free_shift else 0.0
     own = x[: designs.varied.count]
@@ -201,6 +194,17 @@ def _points(m: Model, points: object) -> np.ndarray:
     return places
 
 
+def _target(m: Model, points: np.ndarray, times: object, closed: bool, ordered: bool, fine: np.ndarray) -> Target:
+    """Return the target of points (N, 2) for a motion at times ``fine`` (T,) (s). Raises ModelError."""
+    target = Target(
+        points, _times(m, times, len(points)), switch(f"{m.name}: fit_path: closed", closed),
+        _returns(m, fine), (float(fine[0]), float(fine[-1])), switch(f"{m.name}: fit_path: ordered", ordered),
+    )  # fmt: skip
+    if target.ordered and target.times is not None:
+        raise ModelError(f"{m.name}: fit_path: with times the order of the points is theirs; leave out ordered=True")
+    return target
+
+
 def _times(m: Model, times: object, count: int) -> np.ndarray | None:
     if times is None:
         return None
@@ -213,7 +217,7 @@ def _times(m: Model, times: object, count: int) -> np.ndarray | None:
 
 
 def _traced(m: Model, point: str | Marker | None, build: Build | None) -> tuple[Model, str]:
-    """The mechanism, which traces the point, and the name of the trace. Raises ModelError."""
+    """Return the mechanism, which traces the point, and the name of the trace. Raises ModelError."""
     if isinstance(point, Marker):
         if build is not None:
             raise ModelError(f"{m.name}: fit_path: with build the point is a name; trace it there: m.trace(...)")
@@ -256,7 +260,10 @@ def _told(owner: str, name: str, function: Callable[[Any, float], object] | None
 
 def _nothing(m: Model, search: Search, limit: float, grashof: bool) -> str:
     asked = [f"a transmission angle of {limit:g} rad"] * bool(limit) + ["Grashof's condition"] * bool(grashof)
-    tried = f"{m.name}: fit_path: of {search.designs.evaluations} designs within the bounds "
+    tried = f"{m.name}: fit_path: of {counted(search.designs.evaluations, 'design')} within the bounds "
     if not search.closed:
         return f"{tried}none closes over the whole motion; widen vary, or drive a link that can turn so far"
-    return f"{tried}{search.closed} close, and none of them meets {' and '.join(asked)}; ask for less, or widen vary"
+    closed = (
+        "1 closes, and it does not meet" if search.closed == 1 else f"{search.closed} close, and none of them meets"
+    )
+    return f"{tried}{closed} {' and '.join(asked)}; ask for less, or widen vary"

@@ -16,9 +16,9 @@ import numpy as np
 from mbsd.base.arguments import checked, finite_number, positive_number, switch, users_progress, whole_number
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import Suggesting, no_such, shown
+from mbsd.base.quantity import counted
 from mbsd.model.mechanism import Model
-from mbsd.synthesis.moves import Moves, Tried
-from mbsd.synthesis.wishes import Bounds, Condition, bounds_of, conditions_of
+from mbsd.synthesis.evaluation import Bounds, Condition, Moves, Tried, bounds_of, conditions_of
 
 METHODS = ("SLSQP", "trust-constr")
 MOST = 100
@@ -56,9 +56,8 @@ class Optimum(Suggesting):
     def __repr__(self) -> str:
         numbers = ", ".join(f"{name} {value:.6g}" for name, value in self.values.items())
         ended = "" if self.met else f"; not met: {self.message}"
-        return (
-            f"<Optimum of {self.mechanism.name}: {self.objective:.6g} at {numbers}; {self.evaluations} motions{ended}>"
-        )
+        motions = counted(self.evaluations, "motion")
+        return f"<Optimum of {self.mechanism.name}: {self.objective:.6g} at {numbers}; {motions}{ended}>"
 
 
 @checked
@@ -111,14 +110,14 @@ def optimise(
     moves = Moves(m, bounds, build, objective, conditions, (duration, steps, times), simulate, tolerance)
     first = _first(m, bounds, moves, start)
     search = _Search(moves, bounds, conditions, sign, progress)
-    begun = search.at((first - bounds.low) / bounds.size)  # raises what it cannot do
+    begun = search.motion_at((first - bounds.low) / bounds.size)  # raises what it cannot do
     search.scale = max(abs(begun.value), float(np.abs(begun.slope * bounds.size).max(initial=0.0))) or 1.0
     message, ended = search.run(method, most, precision)
     return _optimum(search, message, ended)
 
 
 def _first(m: Model, bounds: Bounds, moves: Moves, start: Mapping[str, float] | None) -> np.ndarray:
-    """(k,) where the search begins. Raises ModelError for a start that cannot be."""
+    """Return (k,) where the search begins. Raises ModelError for a start that cannot be."""
     first = np.clip(moves.given, bounds.low, bounds.high)
     if start is None:
         return first
@@ -151,8 +150,8 @@ class _Search:
         self.best: tuple[np.ndarray, Tried] | None = None
         self.history: list[float] = []
 
-    def at(self, u: np.ndarray) -> Tried:
-        """The motion at u; where there is none, one that is worse the farther u is from the last that there was."""
+    def motion_at(self, u: np.ndarray) -> Tried:
+        """Return the motion at u; if there is none, one that is worse the farther u is from the last valid one."""
         u = np.clip(u, 0.0, 1.0)
         key = u.tobytes()
         if key in self.kept:
@@ -174,7 +173,7 @@ class _Search:
         return tried
 
     def missed(self, tried: Tried) -> float:
-        """How far the worst condition is missed, in its size."""
+        """Return how far the worst condition is missed, in its size."""
         worst = 0.0
         for condition, value in zip(self.conditions, tried.conditions, strict=True):
             size = _size(condition, value)
@@ -203,23 +202,23 @@ class _Search:
         options: dict[str, Any] = {"maxiter": most}
         options |= {"ftol": precision} if method == "SLSQP" else {"xtol": precision, "gtol": precision}
         result = minimize(
-            lambda u: factor * self.at(u).value,
+            lambda u: factor * self.motion_at(u).value,
             self.good[0],
-            jac=lambda u: factor * self.at(u).slope * size,
+            jac=lambda u: factor * self.motion_at(u).slope * size,
             method=method,
             bounds=[(0.0, 1.0)] * len(size),
             constraints=self._slsqp() if method == "SLSQP" else self._trust(),
             options=options,
         )
-        self.at(result.x)
+        self.motion_at(result.x)
         return str(result.message), bool(result.success) or result.status in (1, 2)
 
     def _parts(self, k: int) -> tuple[float, Callable[[Any], float], Callable[[Any], np.ndarray]]:
         size = _size(self.conditions[k], self.good[1].conditions[k] if self.good else 1.0)
         return (
             size,
-            lambda u: self.at(u).conditions[k] / size,
-            lambda u: self.at(u).condition_slopes[k] * self.bounds.size / size,
+            lambda u: self.motion_at(u).conditions[k] / size,
+            lambda u: self.motion_at(u).condition_slopes[k] * self.bounds.size / size,
         )
 
     def _slsqp(self) -> list[dict[str, Any]]:

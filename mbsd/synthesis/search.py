@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from mbsd.synthesis.descents import descended
 from mbsd.synthesis.designs import Designs, Paths
-from mbsd.synthesis.residuals import Residuals
+from mbsd.synthesis.least_squares import Residuals, descended
 from mbsd.synthesis.target import Target
 
 if TYPE_CHECKING:
@@ -84,7 +83,7 @@ class Search:
         return np.append(varied.low, 0.0), np.append(varied.high, last - first)
 
     def run(self, starts: int, seed: int) -> tuple[np.ndarray, list[float]] | None:
-        """The best vector and the root mean square (m) that each start ended with; None where no design does."""
+        """Return the best vector and the root mean square (m) that each start ended with; None where no design does."""
         best: np.ndarray | None = None
         worst_of = np.inf
         ends: list[float] = []
@@ -102,7 +101,7 @@ class Search:
         return None if best is None else (best, ends)
 
     def error(self, x: np.ndarray) -> float:
-        """Root mean square (m) of one design; infinite where it does not close or meet the conditions."""
+        """Return the root mean square (m) of one design; infinite if it does not close or meet the conditions."""
         paths = self._paths(x[None], fine=True)
         if not self._meets(paths)[0]:
             return np.inf
@@ -115,7 +114,7 @@ class Search:
         return Residuals(self.designs, self.target, self.least_transmission, low, high - low)
 
     def _started(self, random: np.random.Generator, start: int, starts: int) -> tuple[np.ndarray, float]:
-        """The best vector of a start, and its root mean square (m), infinite where no design serves."""
+        """Return the best vector of a start, and its root mean square (m), infinite where no design serves."""
         low, _ = self.bounds
         sequence, count = self._sequence(random)
         best, least = low, np.inf
@@ -144,13 +143,13 @@ class Search:
         return best, least
 
     def _best(self, u: np.ndarray) -> tuple[np.ndarray, float]:
-        """Best design after least squares, a vector, and its root mean square (m); from u (n, k), best first."""
+        """Return the best vector after least squares and its root mean square (m), from u (n, k), best first."""
         low, high = self.bounds
         fitted = [self._fitted(low + (high - low) * u[k]) for k in _apart(u, POLISHED)]
         return min(fitted, key=lambda fit: fit[1])
 
     def _descended(self, drawn: np.ndarray, done: float) -> tuple[np.ndarray, np.ndarray]:
-        """The ends of descents from the best of designs drawn (n, k), the best first, and their costs."""
+        """Return the ends of descents from the best of designs drawn (n, k), the best first, and their costs."""
         low, high = self.bounds
         costs = np.concatenate([self._cost(low + (high - low) * some) for some in np.array_split(drawn, 8)])
         order = np.argsort(costs, kind="stable")
@@ -167,7 +166,7 @@ class Search:
         return self.designs.at_once and self.designs.build is None
 
     def _sequence(self, random: np.random.Generator) -> tuple[QMCEngine, int]:
-        """Designs in parts of the bounds, and how many of them a round takes."""
+        """Return designs in parts of the bounds, and how many of them a round takes."""
         from scipy.stats import qmc
 
         numbers = len(self.bounds[0])
@@ -175,7 +174,7 @@ class Search:
         return qmc.Sobol(numbers, rng=random), 1 << int(np.ceil(np.log2(wanted)))
 
     def _evolved(self, first: np.ndarray, random: np.random.Generator, start: int, starts: int) -> np.ndarray:
-        """The last generation after the ``first`` (n, k), the best first."""
+        """Return the last generation after the ``first`` (n, k), the best first."""
         from scipy.optimize import differential_evolution
 
         low, high = self.bounds
@@ -197,7 +196,7 @@ class Search:
         return result.population[np.argsort(result.population_energies, kind="stable")]
 
     def _seen(self, cost: float, done: float, u: np.ndarray) -> None:
-        """A design u (k,) in parts of the bounds, the best of those that were just tried."""
+        """Report a design u (k,) in parts of the bounds, the best of those that were just tried."""
         error = float(np.sqrt(cost)) * self.target.extent if cost < 1.0 else np.inf
         if error < self.best:
             self.best = error
@@ -207,7 +206,7 @@ class Search:
         self.progress(done, self.best)
 
     def _fitted(self, x: np.ndarray) -> tuple[np.ndarray, float]:
-        """Least squares from one design: the better of both, and its root mean square (m)."""
+        """Return the better of a design and its least squares fit, and its root mean square (m)."""
         before = self.error(x)
         if not np.isfinite(before):
             return x, before
@@ -218,7 +217,7 @@ class Search:
         return (after, error) if error < before else (x, before)
 
     def _cost(self, x: np.ndarray) -> np.ndarray:
-        """(n,) of designs x (n, k)."""
+        """Return (n,) of designs x (n, k)."""
         paths = self._paths(x, fine=False)
         out = np.full(len(x), OPEN) + paths.excess
         meets, closes = self._meets(paths), paths.closes
@@ -242,7 +241,7 @@ class Search:
 
 
 def _apart(designs: np.ndarray, most: int) -> list[int]:
-    """Numbers of the first designs (n, k) that are apart from each other."""
+    """Return numbers of the first designs (n, k) that are apart from each other."""
     chosen: list[int] = []
     for k, design in enumerate(designs):
         if all(np.abs(design - designs[other]).max() > APART for other in chosen):

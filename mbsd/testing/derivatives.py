@@ -8,16 +8,15 @@ from typing import Any
 import numpy as np
 
 from mbsd.arrays.packing import pack
-from mbsd.derivatives.asked import wanted
-from mbsd.derivatives.numbers.number_steps import size_of, step_of
-from mbsd.derivatives.numbers.variants import FOURTH
+from mbsd.derivatives.numbers.variants import FOURTH, size_of, step_of
+from mbsd.derivatives.requests import wanted
 from mbsd.derivatives.sensitivities import moves_freely, sensitivities
 from mbsd.mechanism import Mechanism
 from mbsd.numbers.names import Number, number_named, with_values
 from mbsd.testing.kinds import compare
 
 STEP = 1e-3
-"""Step of the differences, as part of the size of a number; see mbsd/derivatives/numbers/number_steps.py."""
+"""Step of the differences, as part of the size of a number; see mbsd/derivatives/numbers/variants.py."""
 CLOSER = 0.25
 """Part of the step of the differences that confirm the first ones."""
 SLIGHT = 1e-4

@@ -13,10 +13,7 @@ from mbsd.base.errors import ModelError
 from mbsd.base.files import csv_text, write_whole
 from mbsd.base.names import Suggesting
 from mbsd.tolerancing.dimensions.dimension import Dimension
-from mbsd.tolerancing.statistics.derivatives import parts
-from mbsd.tolerancing.statistics.halving import Halving
-from mbsd.tolerancing.statistics.shares import Sobol
-from mbsd.tolerancing.statistics.yields import Limits, Yield, yield_of
+from mbsd.tolerancing.statistics import Halving, Limits, Sobol, Yield, parts, yield_of
 
 if TYPE_CHECKING:
     from mbsd.pictures import Picture

@@ -22,16 +22,26 @@ from mbsd.base.errors import ModelError
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import check_memory
 from mbsd.tolerancing.dimensions.dimension import Dimension
-from mbsd.tolerancing.machines.functions import function_task
 from mbsd.tolerancing.machines.one_by_one import Machines
 from mbsd.tolerancing.machines.results import named_after
-from mbsd.tolerancing.machines.tasks import Task, task_of
+from mbsd.tolerancing.machines.tasks import Task, function_task, task_of
 from mbsd.tolerancing.outcome import Tolerances
-from mbsd.tolerancing.statistics.derivatives import drawn, middles, parts, slopes
-from mbsd.tolerancing.statistics.halving import curved, halving, solved_again
-from mbsd.tolerancing.statistics.shares import linear_variances, shares_of, sobol_indices
-from mbsd.tolerancing.statistics.worst import linear_worst, vertex_worst
-from mbsd.tolerancing.statistics.yields import limits_given, within
+from mbsd.tolerancing.statistics import (
+    curved,
+    drawn,
+    halving,
+    limits_given,
+    linear_variances,
+    linear_worst,
+    middles,
+    parts,
+    shares_of,
+    slopes,
+    sobol_indices,
+    solved_again,
+    vertex_worst,
+    within,
+)
 
 NO_NUMBER = "the result is no number"
 MOST = 100_000_000

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from math import degrees
 
 from mbsd import Mechanism, Solution
+from mbsd.machines.body.chain import Tempo
 from mbsd.machines.body.figure import Figure
 from mbsd.machines.body.hip_thrust import ELBOWS_BACK, hip_thrust
 from mbsd.machines.body.lift import with_moments
-from mbsd.machines.body.repetition import Tempo
-from mbsd.machines.body.upright import ELBOWS_DOWN, bar_on_shoulders, deadlift, squat
+from mbsd.machines.body.squat_and_deadlift import ELBOWS_DOWN, bar_on_shoulders, deadlift, squat
 
 VARIANTS = {
     "squat": {"exercise": "squat", "up": 1.5},

@@ -218,7 +218,7 @@ def natural_rate(span: float) -> float:
 
 
 def speed(rate: float) -> str:
-    """``in real time``, ``slowed 20 times``, ``5 times faster``."""
+    """Return ``in real time``, ``slowed 20 times`` or ``5 times faster``."""
     if abs(rate - 1) < 0.02:
         return "in real time"
     return f"slowed {figures(1 / rate, 3)} times" if rate < 1 else f"{figures(rate, 3)} times faster"

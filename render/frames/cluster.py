@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from mbsd.dealing.wrong_answer import WrongAnswer, printable
+from mbsd.dealing.report import WrongAnswer, printable
 from render.blender.child import KeptBlender
 from render.blender.job import Answer, Job
 from render.blender.picture_file import fault_of, most_bytes, name_of
@@ -69,7 +69,7 @@ class _Kept:
             self.blender = None
 
     def stop_if_idle(self) -> None:
-        """Called a while after each picture."""
+        """Stop if nothing was asked for a while; called a while after each picture."""
         if self.busy.acquire(blocking=False):
             try:
                 if time.monotonic() - self.used >= IDLE:

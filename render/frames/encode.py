@@ -116,7 +116,7 @@ def _feed(process: subprocess.Popen[bytes], pictures: Iterable[bytes], watch: _W
 
 @contextmanager
 def _ended(process: subprocess.Popen[bytes]) -> Iterator[None]:
-    """However the block ends, the process has ended after it."""
+    """End the process after the block, however that ends."""
     try:
         yield
     finally:

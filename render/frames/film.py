@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from render.film.inputs import encoder_version, named, read_film, stage_key
 from render.presets import Preset, has_sound
 from shared.stage.console import say
-from shared.stage.errors import UserError
 from shared.stage.files import sources_hash, write_bytes
 from shared.stage.paths import Out
 from shared.stage.stages import Stage, key_of, versions
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def run(name: str, preset: Preset, show: str = "", sound: str = "") -> None:
-    """The stage: out/films/<mechanism>-<preset>.mp4, with the sound beside it as WAV unless ``sound`` is "off".
+    """Make out/films/<mechanism>-<preset>.mp4, with the sound beside it as WAV unless ``sound`` is "off".
 
     What is there already is not made again: pictures that a film with other sound has are not encoded again, either.
     Raises UserError for another word than on or off.
@@ -40,14 +40,7 @@ def run(name: str, preset: Preset, show: str = "", sound: str = "") -> None:
     store = FrameStore(out.frames(preset.name), (preset.width, preset.height))
     index = jsonfile.read(store.index, FrameIndex)
     silent = _silent_film(out, preset, show, store, index)
-    if heard:
-        from render.frames import encode
-
-        waves = write_sound(out, preset, show, wav_of(film))
-        encode.mux(silent, waves, len(index.frames), preset, index.fps, film)
-    else:
-        wav_of(film).unlink(missing_ok=True)
-        write_bytes(film, silent.read_bytes())
+    finish(silent, partial(_sound, out, preset, show) if heard else None, len(index.frames), preset, index.fps, film)
     stage.record()
     seconds, words = len(index.frames) / index.fps, "with its sound" if heard else "silent"
     size = film.stat().st_size / 1e6
@@ -64,12 +57,30 @@ def wav_of(film: Path) -> Path:
     return film.with_suffix(".wav")
 
 
+def finish(silent: Path, sound: Callable[[], bytes] | None, count: int, preset: Preset, fps: int, film: Path) -> None:
+    """Write ``film`` of ``count`` frames whole from the silent one, and beside it the WAV of ``sound``, if any."""
+    from render.frames.encode import mux
+
+    waves = wav_of(film)
+    if sound is None:
+        waves.unlink(missing_ok=True)
+        write_bytes(film, silent.read_bytes())
+        return
+    write_bytes(waves, sound())
+    mux(silent, waves, count, preset, fps, film)
+
+
 def write_sound(out: Out, preset: Preset, show: str, target: Path) -> Path:
-    """Return the sound of a film as a WAV file, written whole."""
+    """Write the sound of a film whole as the WAV file ``target``, and return it."""
+    write_bytes(target, _sound(out, preset, show))
+    return target
+
+
+def _sound(out: Out, preset: Preset, show: str) -> bytes:
+    """Return the sound of a film as the bytes of a WAV file."""
     from render.sound.sound import sound_of, wav
 
-    write_bytes(target, wav(sound_of(read_film(out, show, preset.aspect))))
-    return target
+    return wav(sound_of(read_film(out, show, preset.aspect)))
 
 
 def _stage(out: Out, preset: Preset, show: str, heard: bool) -> Stage:
@@ -94,19 +105,7 @@ def _silent_film(out: Out, preset: Preset, show: str, store: FrameStore, index: 
     key = key_of(index.frames, index.fps, preset, encode.SETTINGS, encoder_version())
     stage = Stage(out, film.stem.replace(out.name, "pictures", 1), key, [target])
     if not stage.is_fresh():
-        encode.encode(_pictures(out.name, store, index.frames), len(index.frames), preset, index.fps, target)
+        pictures = (content for _, content in store.contents(out.name, index.frames))
+        encode.encode(pictures, len(index.frames), preset, index.fps, target)
         stage.record()
     return target
-
-
-def _pictures(mechanism: str, store: FrameStore, names: Sequence[str]) -> Iterator[bytes]:
-    """Yield the pictures in order, each compared with the hash in its name; the bytes compared are the bytes filmed."""
-    for number, name in enumerate(names):
-        content = store.read(name)
-        if content is None:
-            store.find(name.partition("-")[0])  # removes it, so that it is missed
-            raise UserError(
-                f"{mechanism}: frame {number} ({name}) changed or went while the film was written; the same command "
-                "renders it again"
-            )
-        yield content

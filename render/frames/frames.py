@@ -94,7 +94,7 @@ RESERVE = 200e6
 
 
 def run(name: str, preset: Preset, show: str = "") -> None:
-    """The stage: every frame of the film in the store, and frames.json."""
+    """Make every frame of the film in the store, and frames.json."""
     started = time.perf_counter()
     out = Out(name)
     store = FrameStore(out.frames(preset.name), (preset.width, preset.height))
@@ -238,7 +238,7 @@ def render(pictures: Pictures, store: FrameStore, frames: Sequence[int], what: s
     if not missing:
         return
     _refuse_full_disk(name, preset, store, len(missing))
-    known = _forecast(preset, store)
+    known = forecast(preset, store)
     if known is not None:
         each, source = known
         say("frames", f"{name}: forecast {duration(each * len(missing))} at {duration(each)} a frame, {source}")
@@ -266,7 +266,7 @@ def _makers(job: Job, store: FrameStore, longest: float) -> AbstractContextManag
     return cluster.workers(job, store)
 
 
-def _forecast(preset: Preset, store: FrameStore) -> tuple[float, str] | None:
+def forecast(preset: Preset, store: FrameStore) -> tuple[float, str] | None:
     """Return seconds a picture, and where the number is from; None if nothing comparable was rendered here yet.
 
     The last run of this preset counts, else the run nearest in size, scaled by samples. Below a certain size it is
@@ -284,7 +284,7 @@ def _forecast(preset: Preset, store: FrameStore) -> tuple[float, str] | None:
 
 
 def _refuse_full_disk(name: str, preset: Preset, store: FrameStore, count: int) -> None:
-    """A PNG of the studio takes about 1.3 bytes a pixel; three at worst."""
+    """Raise UserError for a full disk: a PNG of the studio takes about 1.3 bytes a pixel, three at worst."""
     needed = 3.0 * preset.width * preset.height * count + RESERVE
     free = shutil.disk_usage(store.folder).free
     if free < needed:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def still(name: str, preset: Preset, frame: int, show: str = "") -> None:
-    """out/<mechanism>/stills/<preset>-<frame>.png; raises UserError if the film has no such frame."""
+    """Make out/<mechanism>/stills/<preset>-<frame>.png. Raises UserError if the film has no such frame."""
     out = Out(name)
     target = named(out.stills / f"{preset.name}-{frame:04d}.png", show)
     stage = Stage(out, f"still-{target.stem}", stage_key(out, preset, frame, show), [target])
@@ -33,7 +33,7 @@ def still(name: str, preset: Preset, frame: int, show: str = "") -> None:
 
 
 def poster(name: str, preset: Preset, show: str = "") -> None:
-    """out/<mechanism>/poster.png: the moment that ``shot.poster`` names, with the samples of a poster."""
+    """Make out/<mechanism>/poster.png: the moment that ``shot.poster`` names, with the samples of a poster."""
     out = Out(name)
     stage = _poster(out, preset, show)
     _make(out, preset.of_poster, None, stage.outputs[0], stage, show)
@@ -50,7 +50,7 @@ def _poster(out: Out, preset: Preset, show: str) -> Stage:
 
 
 def _make(out: Out, preset: Preset, frame: int | None, target: Path, stage: Stage, show: str) -> None:
-    """Through a store of frames: a still that the film has shows at once, and the film finds the still."""
+    """Make a still through a store of frames: the film's frames are used at once, and the film finds the still."""
     word = "poster" if frame is None else "still"
     if stage.is_fresh():
         say(word, f"{out.name}: {preset}: nothing to do")
@@ -94,7 +94,7 @@ PAPER, INK = (250, 250, 251), (32, 37, 43)
 
 
 def run(name: str, preset: Preset, show: str = "") -> None:
-    """out/<mechanism>/contact.png; frames that the film has are not rendered again."""
+    """Make out/<mechanism>/contact.png; frames that the film has are not rendered again."""
     out = Out(name)
     target = named(out.contact, show, preset.suffix)
     stage = Stage(out, target.stem, stage_key(out, preset, show), [target])

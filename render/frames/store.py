@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Annotated, Literal
@@ -96,6 +96,23 @@ class FrameStore:
             if self._is_picture(path, content):
                 return content
         return None
+
+    def contents(self, mechanism: str, names: Iterable[str]) -> Iterator[tuple[str, bytes]]:
+        """Yield name and bytes of the pictures of a film's frames in order, each read once while it stands.
+
+        The bytes are compared with the hash in the name. Raises UserError for a picture that changed meanwhile.
+        """
+        before, content = "", None
+        for frame, name in enumerate(names):
+            if name != before or content is None:
+                before, content = name, self.read(name)
+            if content is None:
+                self.find(name.partition("-")[0])  # removes it, so that it is missed
+                raise UserError(
+                    f"{mechanism}: frame {frame} ({name}) changed or went while the film was written; the same command "
+                    "renders it again"
+                )
+            yield name, content
 
     def keep(self, name: str, content: bytes) -> None:
         """Keep a picture that was made elsewhere. Raises UserError if these are not its bytes, or the disk is full."""

@@ -235,7 +235,7 @@ class Animation:
         return self.kept if len(values) == len(self.kept) else self.fewer
 
     def add(self, node: int, path: str, values: np.ndarray) -> None:
-        """``values`` at the times ``kept``, or ``fewer``: translation, scale or weights of a node."""
+        """Add ``values`` at the times ``kept``, or ``fewer``: translation, scale or weights of a node."""
         self.tracks.append(Track(node, path, values))
         self._sample(node, path, values)
 

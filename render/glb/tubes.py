@@ -217,7 +217,7 @@ class Springs:
         self.nodes: list[int] = []
 
     def stretched(self, spring: Stretched) -> None:
-        """A spring, damper or rope."""
+        """Add a spring, damper or rope."""
         a, b = (
             self._ends(body, marker, spring.z)
             for body, marker in zip(spring.shape.bodies, spring.shape.markers, strict=True)
@@ -235,7 +235,7 @@ class Springs:
                 self._coil(spec, path, a, b)
 
     def spiral(self, spring: Spiral) -> None:
-        """A torsion spring."""
+        """Add a torsion spring."""
         wire, hub, stud = spring.specs
         fewer = self._animation.fewer
         place, start = (values[fewer] for values in moved(self._motion, spring.outer, spring.at))
@@ -261,7 +261,7 @@ class Springs:
         return np.column_stack([place, np.full(len(place), z)])
 
     def _straight(self, spec: TubeSpec, name: str, lines: Array) -> None:
-        """Between two points (T, 2, 3) that move."""
+        """Add a straight tube between two points (T, 2, 3) that move."""
         way = lines[:, 1] - lines[:, 0]
         if not way[:, :2].any():
             low, high = (float(z) for z in lines[0, :, 2])
@@ -274,7 +274,7 @@ class Springs:
         self._between(node, lines[:, 0], way, length / mean)
 
     def _upright(self, spec: TubeSpec, name: str, places: Array, low: float, high: float) -> None:
-        """From one height to another (m) at places (T, 2)."""
+        """Add a tube from one height to another (m) at places (T, 2)."""
         node = self._node(spec, name, [tube(np.array([[0.0, 0, low], [0.0, 0, high]]), spec.radius)])
         if node is not None:
             self._animation.place(node, _in_plane(places), np.zeros(len(places)))

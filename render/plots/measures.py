@@ -164,7 +164,7 @@ SPACE = 8.0
 
 
 def mark(figure: Figure, over: Horizon, motion: Motion) -> None:
-    """A dotted line through all axes at each mark, with its words above the first axes where there is room."""
+    """Draw a dotted line through all axes at each mark, with its words above the first axes if there is room."""
     first, *_ = figure.axes
     width = first.get_position().width * figure.get_size_inches()[0] * 72.0
     low, high = first.get_xlim()

@@ -70,7 +70,7 @@ HALO = [withStroke(linewidth=3, foreground="white")]
 
 @contextmanager
 def house_style() -> Iterator[None]:
-    """The project's settings alone; a matplotlibrc of the user's does not change a plot."""
+    """Return the project's settings alone; a matplotlibrc of the user's does not change a plot."""
     with mpl.rc_context():
         mpl.rcdefaults()
         for key, value in RC.items():
@@ -198,7 +198,7 @@ class Labels:
         self.labels.append(_Label(text, at, colour, size, weight, clearance))
 
     def avoid_lines(self, corners: list[tuple[float, float]]) -> None:
-        """A line that the names should leave free (data coordinates)."""
+        """Add a line that the names should leave free (data coordinates)."""
         self.lines.append(np.asarray(corners, dtype=float))
 
     def write(self) -> None:

@@ -133,12 +133,12 @@ def _numbers(out: Out) -> list[str]:
     return [
         str(sum(len(solids.pieces) for solids in parts.bodies.values())),
         f"{written(speed, 'm/s')} ({name})" if Amounts(motion).without_noise(speed, "m/s") else "",
-        _effort(motion),
+        largest_effort(motion),
         "" if gap is None else written(gap, "m"),
     ]
 
 
-def _effort(motion: Motion) -> str:
+def largest_effort(motion: Motion) -> str:
     """Return the largest force or torque of a driver; of forces where nothing is driven, or drivers push by nothing."""
     drivers = {name: (driver.effort, driver.effort_unit == "N") for name, driver in motion.drivers.items()}
     forces = {

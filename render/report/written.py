@@ -30,12 +30,12 @@ class Amounts:
 
 
 def speed(value: float) -> str:
-    """``1.05 m/s (3.77 km/h)``."""
+    """Return ``1.05 m/s (3.77 km/h)``."""
     return f"{written(value, 'm/s')} ({figures(3.6 * value, 3)} km/h)"
 
 
 def turning(value: float) -> str:
-    """``6.28 rad/s (60 rpm)``."""
+    """Return ``6.28 rad/s (60 rpm)``."""
     return f"{written(value, 'rad/s')} ({figures(value * 30 / math.pi, 3)} rpm)"
 
 
@@ -45,12 +45,12 @@ def degrees(value: float) -> str:
 
 
 def moment(t: float) -> str:
-    """``0.214 s``."""
+    """Return ``0.214 s``."""
     return f"{figures(t)} s"
 
 
 def listed(words: Sequence[str]) -> str:
-    """``a, b and c``."""
+    """Return ``a, b and c``."""
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 

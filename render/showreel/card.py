@@ -66,7 +66,7 @@ def number(fps: int) -> int:
 
 
 def _eased(part: float) -> float:
-    """0..1 with a slow start and end."""
+    """Return 0 .. 1 with a slow start and end."""
     return part * part * (3 - 2 * part)
 
 

@@ -241,7 +241,7 @@ def _refuse_unlike(row: Sequence[Clip]) -> None:
 
 
 def _concatenate(parts: Sequence[Sequence[Clip]], titles: Sequence[Title], target: Path, scratch: Path) -> None:
-    """ffmpeg's concat demuxer, which copies the pictures' packets; players show the chapters.
+    """Join the films by ffmpeg's concat demuxer, which copies the pictures' packets; players show the chapters.
 
     Sound is encoded anew. Films go in without theirs, whose first packet begins 21 ms early: so much later the demuxer
     would show the pictures.
@@ -274,7 +274,7 @@ def _concatenate(parts: Sequence[Sequence[Clip]], titles: Sequence[Title], targe
 
 
 def _check(row: Sequence[Clip], films: Sequence[Path], part: Path, name: str, preset: Preset, fps: int) -> None:
-    """Every packet is there in order, and every frame decodes; else the film that does not is named."""
+    """Raise UserError naming the film whose packets are not in order or whose frames do not decode."""
     count = sum(clip.frames for clip in row)
     try:
         refuse_other_than(part, name, encode.ffmpeg(), count, preset, fps, PATIENCE)

@@ -87,7 +87,7 @@ class Desk:
             channel += mono * self._fine(gain)
 
     def noise(self, source: str, level: Array, centre: Array, side: Array) -> None:
-        """Noise of rms ``level`` (M + 1,) Pa about ``centre`` (M + 1,) Hz."""
+        """Add noise of rms ``level`` (M + 1,) Pa about ``centre`` (M + 1,) Hz."""
         at = np.clip(np.log2(np.maximum(centre, 1.0) / OCTAVES[0]), 0, len(OCTAVES) - 1)
         power = (level * _gains(side)) ** 2
         for k in range(len(OCTAVES)):

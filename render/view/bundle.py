@@ -24,6 +24,8 @@ from shared.stage.errors import UserError
 from shared.stage.paths import cache_roots
 
 PAGE = Path(__file__).parent / "page"
+CARRIERS = "drawing/carriers.js"
+"""Where strokes of a skeleton are at a moment: a script of mbsd, which the page imports as "carriers"."""
 LOCKED = ("package.json", "package-lock.json", ".npmrc")
 LICENSED = {"three": "three.js", "uplot": "µPlot"}
 """Libraries in the bundle, by folder in node_modules."""
@@ -52,7 +54,7 @@ def bundle() -> Bundle:
         command = [
             *(str(part) for part in (node(), modules / "esbuild/bin/esbuild", PAGE / "src/main.js")),
             *("--bundle", "--minify", "--format=iife", "--target=es2022,safari16.4", "--legal-comments=none"),
-            *("--charset=utf8", "--log-level=warning", f"--outfile={made}"),
+            *("--charset=utf8", "--log-level=warning", f"--alias:carriers={carriers()}", f"--outfile={made}"),
         ]
         _run(command, "esbuild could not bundle the page", {"NODE_PATH": str(modules)}, PAGE)
         made_bundle = Bundle(
@@ -72,13 +74,22 @@ def _folders() -> list[Path]:
     return [root / "page" for root in cache_roots()]
 
 
+def carriers() -> Path:
+    """Return the script of mbsd that this page and mbsd's small page share.
+
+    In a clone mbsd stands beside the rooms; in an installed package it holds them.
+    """
+    rooms = Path(__file__).parents[2]
+    return next(path for path in (rooms / "mbsd" / CARRIERS, rooms.parent / CARRIERS) if path.is_file())
+
+
 def sources_key() -> str:
-    """SHA-256 over names and contents of the page's sources and its lock."""
+    """Return the SHA-256 over names and contents of the page's sources and its lock."""
     digest = hashlib.sha256()
     for path in sorted([*(PAGE / "src").rglob("*"), *(PAGE / name for name in LOCKED)]):
         if path.is_file():
             digest.update(path.relative_to(PAGE).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
-    digest.update(Path(__file__).read_bytes())
+    digest.update(carriers().read_bytes() + Path(__file__).read_bytes())
     return digest.hexdigest()
 
 

@@ -163,7 +163,7 @@ def title_of(mechanism: str) -> str:
 
 
 def floats(values: Any) -> np.ndarray:
-    """As float32."""
+    """Return values as float32."""
     return np.asarray(values, np.float64).astype(np.float32)
 
 
@@ -215,7 +215,7 @@ def _body(body: Any, quiet: Mapping[str, float]) -> dict[str, Any]:
 
 
 def _joint(motion: Motion, joint: JointMotion, quiet: Mapping[str, float]) -> dict[str, Any]:
-    """``at``: the second marker in its body, from where both are at the start."""
+    """Return a joint; ``at``: the second marker in its body, from where both are at the start."""
     body, x, y = joint.bodies[1], joint.x[0], joint.y[0]
     if body in motion.bodies:
         x, y = local_place(motion.bodies[body], x, y)

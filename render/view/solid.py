@@ -119,7 +119,7 @@ LARGER = 2.4
 
 
 def looks_of(look: Look, stands: bool) -> dict[str, Any]:
-    """``dark`` and ``light``: what a page in these colours shows of a machine that was filmed in ``look``."""
+    """Return ``dark`` and ``light``: how a page in these colours shows a machine that was filmed in ``look``."""
     return {
         theme: as_shown(look if look.other is None or look.dark == (theme == "dark") else LOOKS[look.other], stands)
         for theme in ("dark", "light")

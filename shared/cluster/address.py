@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mbsd.dealing.voice import Voice
+from mbsd.dealing.manner import Voice
 from shared.stage.console import duration, say, warn
 from shared.stage.errors import UserError
 from shared.stage.face import to_run

@@ -15,8 +15,7 @@ from mbsd.dealing import deal
 from mbsd.dealing.identity import Trust, asker
 from mbsd.dealing.manner import Kind, Manner
 from mbsd.dealing.pools import Dask
-from mbsd.dealing.report import Report, encoded
-from mbsd.dealing.wrong_answer import printable
+from mbsd.dealing.report import Report, encoded, printable
 from shared.cluster.address import stage_voice
 from shared.cluster.preload import PACKAGES, identity
 from shared.stage.errors import UserError

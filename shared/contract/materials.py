@@ -1,7 +1,7 @@
 """Materials by name: density for physics, appearance for the film. parts.py names one for each piece.
 
 Densities are handbook values (kg/m^3); colours are linear RGB. Inks of anodised aluminium are those of the solver's
-drawings (mbsd/drawing/inks.py).
+drawings (mbsd/drawing/look.py).
 """
 
 from __future__ import annotations

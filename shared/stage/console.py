@@ -139,7 +139,9 @@ def run_cli(main: Callable[[], int | None]) -> NoReturn:
         with suppress(OSError):  # the terminal may be what has gone
             fail(f"stopped{_reason(stop)}; what is finished is kept, the same command goes on from here")
         code = stop.code if isinstance(stop, Stopped) else 130
-    except MemoryError:
+    except (MemoryError, RuntimeError) as error:
+        if isinstance(error, RuntimeError) and "start new thread" not in str(error):
+            raise
         fail("the memory ran out; close other programs or take a smaller preset. The same command goes on from here")
         code = 1
     except ImportError as error:

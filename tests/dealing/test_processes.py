@@ -16,10 +16,9 @@ from typing import Any
 import pytest
 
 from mbsd.dealing.deal import Deal
-from mbsd.dealing.manner import Kind, Manner
+from mbsd.dealing.manner import Kind, Manner, Voice
 from mbsd.dealing.pools import Here, Processes
 from mbsd.dealing.report import Report, encoded
-from mbsd.dealing.voice import Voice
 
 SAID: list[str] = []
 VOICE = Voice(SAID.append, SAID.append, RuntimeError, str, *["no worker"] * 9)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from mbsd.dependencies.imported import modules_below
-from mbsd.studies.identity import depends
+from mbsd.studies import inputs as study_inputs
 
 
 def files_that_import(folder: Path, line: str, count: int = 5) -> list[tuple[Path, str]]:
@@ -22,7 +22,7 @@ def test_a_module_that_many_files_import_is_counted_once(tmp_path: Path) -> None
     met: list[str] = []
     inputs = modules_below(
         files_that_import(tmp_path, "import numpy, numpy.linalg"),
-        depends.StudyPlaces(tmp_path),
+        study_inputs.StudyPlaces(tmp_path),
         lambda module, _inputs, _waiting: met.append(module.__name__),
     )
     assert sorted(met) == ["numpy", "numpy.linalg"]
@@ -36,11 +36,11 @@ def test_the_version_of_a_package_is_asked_for_once(tmp_path: Path, monkeypatch:
         asked[name] += 1
         return "1.0"
 
-    monkeypatch.setattr(depends, "package_state", version)
+    monkeypatch.setattr(study_inputs, "package_state", version)
     inputs = modules_below(
         files_that_import(tmp_path, "import numpy, numpy.linalg, numpy.fft, numpy.random"),
-        depends.StudyPlaces(tmp_path),
-        depends._count,
+        study_inputs.StudyPlaces(tmp_path),
+        study_inputs._count,
     )
     assert inputs.packages == {"numpy": "1.0"}
     assert asked == {"numpy": 1}

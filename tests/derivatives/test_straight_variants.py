@@ -10,7 +10,7 @@ import pytest
 import mbsd
 from benchmarks.derivatives import linkage
 from mbsd.derivatives import simulations
-from mbsd.derivatives.numbers.straight_variants import variants_beside
+from mbsd.derivatives.numbers.near_numbers import variants_beside
 from mbsd.derivatives.numbers.variants import SECOND, TINY, Variants
 from mbsd.equations.loads import Loads
 from mbsd.numbers.names import Number

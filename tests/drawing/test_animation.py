@@ -12,12 +12,10 @@ import pytest
 
 from mbsd import Mechanism, ModelError, constant_rate
 from mbsd.drawing.animation import encoders
-from mbsd.drawing.animation.between import at_times
-from mbsd.drawing.animation.clip import HOLD, clip_of
-from mbsd.drawing.animation.picture.legend import BETWEEN, MARGIN, legend_rows
-from mbsd.drawing.animation.picture.page import Page
-from mbsd.drawing.animation.picture.panel import LEGEND_ROW
-from mbsd.drawing.animation.quantities.arrows import Arrow
+from mbsd.drawing.animation.arrows import Arrow
+from mbsd.drawing.animation.clip import HOLD, at_times, clip_of
+from mbsd.drawing.animation.page import BETWEEN, MARGIN, Page, legend_rows
+from mbsd.drawing.animation.panel import LEGEND_ROW
 from mbsd.drawing.animation.scene import Scene, scene_of
 from mbsd.drawing.animation.words import EVERYTHING
 from mbsd.drawing.look import PAPER

@@ -1,16 +1,22 @@
-"""What the arrows of an animation stand for, and their scales."""
+"""Arrows and bars of an animation: their quantities, scales and words."""
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
 
 from mbsd import Mechanism, constant_rate
 from mbsd.base.quantity import written
-from mbsd.drawing.animation.picture.scales import LONGEST, scales_of
-from mbsd.drawing.animation.quantities.arrows import Arc, Arrow
+from mbsd.drawing.animation.arrows import LONGEST, Arc, Arrow, scales_of
+from mbsd.drawing.animation.bars import Bars
+from mbsd.drawing.animation.brush import Brush
+from mbsd.drawing.animation.flow import Balance
 from mbsd.drawing.animation.words import round_below
 from tests.drawing.test_animation import four_bar, scene
 from tools.models.contact_models import ball
@@ -71,7 +77,7 @@ def test_teeth_turn_with_their_wheels_and_stay_in_mesh() -> None:
     m.drive_angle("motor", pinion, constant_rate(3.0))
     drawn = scene(m.sweep(2 * math.pi))
     for k in (0, 7, 23):
-        brush = Brush(None, drawn.unit)
+        brush = Brush(None, drawn.steady.unit)
         drawn.draw(brush, k, {"one": "#112233", "two": "#445566"})
         (z_i, phase_i), (z_j, phase_j) = brush.wheels["one", 0.02], brush.wheels["two", 0.03]
         # a tooth of one meets a gap of two at angle 0 of one, which is pi of two
@@ -100,7 +106,7 @@ def test_energy_flows_from_the_motor_to_the_slider() -> None:
 
 
 def test_impacts_ring_at_the_floor() -> None:
-    from mbsd.drawing.animation.picture.impacts import impacts_of
+    from mbsd.drawing.animation.trails import impacts_of
 
     drawn = scene(ball(0.5).simulate(2.0))
     impacts = impacts_of(drawn)
@@ -137,3 +143,37 @@ def test_units_have_prefixes() -> None:
     assert written(2000.0, "N") == "2 kN"
     assert written(0.2, "m/s") == "200 mm/s"
     assert written(2000.0, "m/s²") == "2000 m/s²"
+
+
+DPI = 100.0
+
+
+class _Plates(Brush):
+    """Keeps the boxes of what is painted (pixels)."""
+
+    def __init__(self) -> None:
+        self.boxes: list[Bbox] = []
+
+    def plate(self, corners: np.ndarray, *_: Any, **__: Any) -> None:
+        self.boxes.append(Bbox([corners.min(axis=0), corners.max(axis=0)]))
+
+    def stroke(self, *_: Any, **__: Any) -> None:
+        pass
+
+
+@pytest.mark.parametrize("height", [132.0, 180.0, 400.0])
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 7])
+def test_names_of_powers_are_clear_of_each_other_and_of_the_bars(count: int, height: float) -> None:
+    energy, power = np.array([1.0, 2.0]), np.array([-1.0, 1.0])
+    powers = {f"gas of cylinder {k}": power * (1.0 + k) for k in range(count)}
+    figure = Figure(figsize=(4.0, 5.0), dpi=DPI)
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    bars, plates = Bars(Balance(energy, energy, powers, {}), (10.0, 20.0, 140.0, height), DPI), _Plates()
+    bars.paint_still(figure, renderer)
+    bars.draw(plates, 1)
+    names = [text for text in figure.texts if text.get_text().startswith("gas")]
+    assert len(names) >= min(count, 3)
+    words = [text.get_window_extent(renderer) for text in figure.texts]
+    for k, box in enumerate(words):
+        assert not any(box.overlaps(other) for other in words[k + 1 :])
+        assert not any(box.overlaps(other) for other in plates.boxes if other.width > 0 and other.height > 0)

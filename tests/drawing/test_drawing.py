@@ -24,8 +24,7 @@ from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.pose import pose_of, start_pose
 from mbsd.drawing.skeleton import draw_on, measure
 from mbsd.drawing.strokes import ROLES, Recorder, moved, strokes_of
-from mbsd.drawing.symbols.outline import hull, rounded
-from mbsd.drawing.symbols.place import free_side
+from mbsd.drawing.symbols.geometry import free_side, hull, rounded
 from mbsd.drawing.symbols.wheels import draw_gear_pair
 from mbsd.measures import largest
 from mbsd.model.force import ForceKind

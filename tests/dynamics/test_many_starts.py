@@ -58,7 +58,7 @@ def test_a_start_that_says_nothing_of_its_turn_is_the_reason_of_its_row(model: C
             alone = model()
             alone.start_near(**{body: 20.0})
             np.testing.assert_allclose(many["x"][last], alone.simulate(0.2, steps=5).body(body).theta[-1], atol=1e-9)
-    with pytest.raises(ModelError, match="1e\\+09 at most, such as what is left of whole turns"):
+    with pytest.raises(ModelError, match="1e\\+09 at most: subtract whole turns"):
         m.start_near(**{body: 1e30})
     m.start_near(**{body: 1e9})
 

@@ -16,7 +16,6 @@ FILES = (
     "kinematics/test_kinematics.py",
     "kinematics/test_dynamics.py",
     "published/test_reference.py",
-    "published/test_reference_joints.py",
     "model/test_user_constraint.py",
 )
 

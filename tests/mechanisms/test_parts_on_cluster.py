@@ -22,7 +22,7 @@ import psutil
 import pytest
 
 from mbsd.dealing import hand
-from mbsd.dealing.wrong_answer import WrongAnswer
+from mbsd.dealing.report import WrongAnswer
 from mechanisms.stages.loading.inputs import Inputs
 from mechanisms.stages.loading.loading import author_code
 from mechanisms.stages.parts import stage as parts_stage

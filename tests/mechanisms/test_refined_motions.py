@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, Motion, Solution, constant_rate, function, polynomial
-from mbsd.drawing.animation.between import at_times
+from mbsd.drawing.animation.clip import at_times
 from mechanisms.quick_return import mechanism as shaper
 from mechanisms.stages.clearance.path import paths
 from mechanisms.stages.solve import solving

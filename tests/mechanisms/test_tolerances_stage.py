@@ -14,8 +14,8 @@ import pytest
 
 from mbsd import Clearance, tolerances
 from mbsd.measures import largest, samples
+from mechanisms.slider_crank import tolerances as author
 from mechanisms.slider_crank.mechanism import Params, build
-from mechanisms.slider_crank.tolerances import tolerances as author
 from mechanisms.stages import tolerances as tolerances_stage
 from mechanisms.stages.solve.masses import give_masses
 from mechanisms.stages.tolerances import advice, wished_results

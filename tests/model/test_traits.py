@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from mbsd import LimitError, Mechanism, ModelError, constant_rate
-from mbsd.drawing.topology.icons import sign_of
+from mbsd.drawing.topology import sign_of
 from mbsd.extend import (
     CONSTANT,
     TURN,

@@ -13,7 +13,7 @@ import pytest
 
 import mbsd
 from mbsd import Mechanism, ModelError, Solution, constant_rate
-from mbsd.derivatives.solution_rows import rows_of
+from mbsd.derivatives.numbers.terms import rows_of
 
 
 @pytest.fixture(scope="module")

@@ -9,8 +9,9 @@ from typing import Any
 
 import pytest
 
-import mbsd.base.errors
-from mbsd.base.errors import PACKAGE, ModelWarning
+import mbsd.base.warning
+from mbsd.base.errors import ModelWarning
+from mbsd.base.warning import PACKAGE
 
 DEEP = "def finds(warn):\n    warn('off', ModelWarning)\ndef asked(warn):\n    finds(warn)\n"
 
@@ -21,8 +22,8 @@ def test_a_warning_names_the_file_outside_the_package(
 ) -> None:
     names: dict[str, Any] = {"ModelWarning": ModelWarning}
     exec(compile(DEEP, f"{PACKAGE[0]}found.py", "exec"), names)
-    monkeypatch.setattr(mbsd.base.errors, "sys", SimpleNamespace(version_info=version, _getframe=sys._getframe))
+    monkeypatch.setattr(mbsd.base.warning, "sys", SimpleNamespace(version_info=version, _getframe=sys._getframe))
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
-        names["asked"](mbsd.base.errors.warn)
+        names["asked"](mbsd.base.warning.warn)
     assert [(warning.filename, str(warning.message)) for warning in told] == [(__file__, "off")]

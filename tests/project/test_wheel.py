@@ -152,7 +152,7 @@ def test_the_wheel_holds_the_solver_the_rooms_and_nothing_else(archives: list[Pa
     with zipfile.ZipFile(archives[1]) as archive:
         names = set(archive.namelist())
     sources = {f.relative_to(ROOT).as_posix() for f in (ROOT / "mbsd").rglob("*.py")}
-    sources.add("mbsd/drawing/view/player.js")
+    sources |= {"mbsd/drawing/player.js", "mbsd/drawing/carriers.js"}
     for room in ("mechanisms", "render", "shared", "studio"):
         files = {f for f in (ROOT / room).rglob("*") if f.is_file() and "__pycache__" not in f.parts}
         gallery = {folder.parent for folder in (ROOT / "mechanisms").glob("*/mechanism.py")}

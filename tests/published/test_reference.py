@@ -511,8 +511,8 @@ def test_its_test_reads_it(name: str, tests: str) -> None:
     named = re.findall(r"`(test_\w+\.py)(?:::(\w+))?`", tests)
     assert named
     for file, function in named:
-        [place] = TESTS.rglob(file)
-        source = place.read_text()
-        assert name in source, f"{file} does not read {name}.json"
+        sources = [source for path in TESTS.rglob(file) if name in (source := path.read_text())]
+        assert len(sources) == 1, f"{name}.json is read by {len(sources)} files called {file}"
+        [source] = sources
         functions = {node.name for node in ast.walk(ast.parse(source)) if isinstance(node, ast.FunctionDef)}
         assert not function or function in functions

@@ -13,7 +13,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from mbsd import Mechanism, constant_rate
-from mbsd.drawing.animation.quantities.loads import reaction_arrows
+from mbsd.drawing.animation.arrows import reaction_arrows
 from mbsd.model.entries import join
 from mbsd.model.force import FORCE_KINDS
 from mbsd.model.joint import CONTACT_KINDS, KINDS, JointKind

@@ -1,17 +1,30 @@
-"""Pages of plots show the numbers they were given, with their units, over the axis that fits."""
+"""Pages of plots show the numbers they were given, with their units: motion, energies, shaking."""
 
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import msgspec
 import numpy as np
 import pytest
 
+from mbsd import Mechanism, harmonic
+from mechanisms.stages.solve.motion_file import to_motion
 from render import plots
+from render.magnitudes import shaking
+from render.plots import plots_of
 from render.plots.measures import horizon
+from render.plots.pages.energy import powers, statement
+from render.plots.pages.forces import frame
+from render.plots.quantities import known_names, quantity
+from render.plots.style import house_style
+from render.report import report
+from render.view.payload import couple_of, frame_of
+from shared.contract import Motion, read_motion, write_motion
 from tests.render.plotted import MOTION, NAMES, figure, overlaps, shown
-from tools.models.motions import plain_skeleton
+from tests.results.test_couples import two_cylinders
+from tools.models.motions import bouncing_ball, plain_skeleton
 
 
 @pytest.mark.parametrize("plot", [name for name in NAMES if name not in ("path",)])
@@ -122,3 +135,178 @@ def test_forces_and_contacts_have_a_page_of_their_own() -> None:
     assert max(lines[1]["end lower"]) > 0.0
     assert {"spring", "twist", "air"} <= set(lines[2])
     assert overlaps(drawn) == []
+
+
+def test_an_impact_is_marked_in_joules_and_is_no_power() -> None:
+    ball = bouncing_ball()
+    given, rate = powers(ball)
+    assert np.abs(given).max() == np.abs(rate).max() == 0.0  # a gradient over the samples would show tens of watts
+    assert (
+        statement(ball) == "nothing gives or takes power: the energy stays, but for 1 impact that takes 1.47 J at once"
+    )
+    drawn = figure("energy", ball)
+    assert "\N{MINUS SIGN}1.47 J" in shown(drawn)
+    assert overlaps(drawn) == []
+    for plot in plots.plots_of(ball):
+        figure(plot, ball).canvas.draw()
+
+
+def test_the_balance_is_said_as_it_is() -> None:
+    assert statement(MOTION) == "the drivers' power is the rate of the energy"
+    dragged = msgspec.structs.replace(
+        MOTION.drivers["motor"], power=[power + 0.3 for power in MOTION.drivers["motor"].power]
+    )
+    motion = msgspec.structs.replace(MOTION, drivers={"motor": dragged})
+    assert "drivers and other forces (friction, dampers, loads; up to 300 mW) is the rate" in statement(motion)
+    (line,) = [line for line in figure("energy", motion).axes[1].lines if line.get_label() == "other forces"]
+    np.testing.assert_allclose(line.get_ydata(), -0.3, atol=1e-9)
+    assert not [line for line in figure("energy", MOTION).axes[1].lines if line.get_label() == "other forces"]
+
+
+def test_elastic_energy_counts_but_not_across_an_event() -> None:
+    ball = bouncing_ball()
+    stored = np.where(np.arange(len(ball.time)) < ball.time.index(ball.events[0].time) + 1, 0.0, 0.5)
+    elastic = msgspec.structs.replace(ball.energy, potential=list(np.add(ball.energy.potential, stored)))
+    _, rate = powers(msgspec.structs.replace(ball, energy=elastic))
+    assert np.abs(rate).max() < 1e-9
+    ramp = msgspec.structs.replace(
+        ball.energy, potential=list(np.add(ball.energy.potential, np.multiply(3, ball.time)))
+    )
+    _, rate = powers(msgspec.structs.replace(ball, energy=ramp))
+    np.testing.assert_allclose(rate, 3.0, rtol=1e-9)
+
+
+def test_rounding_is_drawn_as_a_flat_line() -> None:
+    """A balanced wheel at constant speed: energy, torque and reactions are constant but for the last digit."""
+    random = np.random.default_rng(1)
+    count = len(MOTION.time)
+
+    def noise(size: float, value: float = 0.0) -> list[float]:
+        return list(value + size * random.normal(size=count))
+
+    crank = msgspec.structs.replace(MOTION.bodies["crank"], com=(0.0, 0.0), alpha=noise(1e-14))
+    joint = msgspec.structs.replace(MOTION.joints["A"], fx=noise(1e-16), fy=noise(1e-15, 0.49), torque=noise(1e-17))
+    motor = msgspec.structs.replace(MOTION.drivers["motor"], effort=noise(1e-17), power=noise(1e-16))
+    energy = msgspec.structs.replace(MOTION.energy, kinetic=noise(1e-17, 0.02), potential=noise(1e-17))
+    motion = msgspec.structs.replace(
+        MOTION, bodies={"crank": crank}, joints={"A": joint}, drivers={"motor": motor}, energy=energy, points={}
+    )
+    for plot in ("energy", "bodies", "reactions"):
+        for axes in figure(plot, motion).axes:
+            low, high = axes.get_ylim()
+            assert high - low > 1e-3, (plot, axes.get_ylabel())
+            for line in axes.lines:
+                values = np.asarray(line.get_ydata())
+                if "angle / °" not in axes.get_ylabel() and len(values) == count:
+                    assert np.ptp(values) == 0.0, (plot, line.get_label())
+    assert [axes.get_ylabel() for axes in figure("reactions", motion).axes] == [
+        "reaction force / mN",
+        "driver torque / (N m)",
+    ]
+
+
+def test_small_machines_are_not_taken_for_noise() -> None:
+    """Energies of nanojoules are drawn as they are: what is noise follows from the motion's own size."""
+    small = {
+        "bodies": {
+            name: msgspec.structs.replace(body, mass=1e-8 * body.mass, inertia=1e-8 * body.inertia)
+            for name, body in MOTION.bodies.items()
+        },
+        "joints": {
+            name: msgspec.structs.replace(
+                joint, fx=list(np.multiply(1e-8, joint.fx)), fy=list(np.multiply(1e-8, joint.fy))
+            )
+            for name, joint in MOTION.joints.items()
+        },
+        "drivers": {
+            "motor": msgspec.structs.replace(
+                MOTION.drivers["motor"],
+                effort=list(np.multiply(1e-8, MOTION.drivers["motor"].effort)),
+                power=list(np.multiply(1e-8, MOTION.drivers["motor"].power)),
+            )
+        },
+        "energy": msgspec.structs.replace(
+            MOTION.energy,
+            kinetic=list(np.multiply(1e-8, MOTION.energy.kinetic)),
+            potential=list(np.multiply(1e-8, MOTION.energy.potential)),
+        ),
+    }
+    motion = msgspec.structs.replace(MOTION, **small)
+    for plot in ("energy", "reactions"):
+        for axes, other in zip(figure(plot, motion).axes, figure(plot, MOTION).axes, strict=True):
+            for line, same in zip(axes.lines, other.lines, strict=True):
+                if len(np.asarray(line.get_ydata())) == len(MOTION.time):
+                    np.testing.assert_allclose(1e8 * np.asarray(line.get_ydata()), same.get_ydata(), atol=1e-12)
+
+
+def motion_of(m: Mechanism) -> Motion:
+    sources = dict.fromkeys(m.bodies, "mechanism")
+    return to_motion(m.sweep(steps=360), None, "0" * 64, {}, sources)  # pyright: ignore[reportArgumentType]
+
+
+def test_couples_are_shown_everywhere_as_the_solution_has_them() -> None:
+    m = two_cylinders()
+    motion, exact = motion_of(m), m.sweep(steps=360).shaking()
+    assert motion.couple is not None
+    assert (motion.couple.about, motion.couple.reach) == (0.0, pytest.approx(0.1))
+    assert motion.couple.mx == pytest.approx(exact.mx, abs=1e-12)
+    largest = float(np.abs(exact.mx).max())
+    assert quantity(motion, "shaking couple").components["x"] == pytest.approx(exact.mx, abs=1e-9 * largest)
+    assert "| couple | 5 N m | 0 N m |" in report(motion, None, None)
+    on_the_page = couple_of(motion)
+    assert on_the_page is not None
+    assert not on_the_page["my"].any()
+    assert shaking(motion).fy == pytest.approx(exact.fy, abs=1e-6 * np.abs(exact.fy).max())
+
+
+def test_without_places_nothing_is_said_of_couples() -> None:
+    motion = motion_of(two_cylinders((0.0, 0.0)))
+    assert motion.couple is None
+    assert "shaking couple" not in known_names(motion)
+    assert "Shaking" not in report(motion, None, None)
+    assert couple_of(motion) is None
+
+
+def test_orders_are_in_the_file_the_report_and_the_page_as_the_solution_has_them(tmp_path: Path) -> None:
+    m = two_cylinders()
+    m.bodies["piston_1"].mass = 0.7
+    motion, sol = motion_of(m), m.sweep(steps=360)
+    vibration, exact = motion.vibration, sol.orders(sol.shaking().force)
+    assert vibration is not None
+    assert (vibration.crank, vibration.turns) == ("crank", 1)
+    force_orders, k = vibration.harmonics["shaking force"], vibration.order.index(1.0)
+    row = exact.index(1)
+    assert force_orders.amplitude[1][k] == pytest.approx(exact.amplitude[row, 1])
+    assert force_orders.phase[1][k] == pytest.approx(exact.phase[row, 1])
+    assert force_orders.forward[k] + force_orders.backward[k] == pytest.approx(exact.largest[row])
+    torque = sol.orders(sol.driver("motor").effort)
+    assert vibration.harmonics["motor"].amplitude[0][1] == pytest.approx(torque.amplitude[torque.index(2)])
+    main = sol.orders(sol.joint("main").reaction)
+    assert vibration.harmonics["main"].amplitude[0][1] == pytest.approx(main.amplitude[main.index(2), 0])
+    centre = sol.centre_of_mass()
+    assert vibration.y == pytest.approx(centre.y)
+    text = report(motion, None, None)
+    assert "## Orders" in text
+    assert "goes 0 m along x" in text
+    page = frame_of(motion)
+    assert page is not None
+    assert page["crank"] == "crank"
+    assert all(bars["size"].any() for bars in page["harmonics"].values())  # what is rounding is no bar
+    assert page["harmonics"]["motor"]["size"][1] == pytest.approx(torque.largest[torque.index(2)], rel=1e-6)
+    assert "frame" in plots_of(motion)
+    with house_style():
+        assert len(frame(motion).axes) == 3
+    write_motion(tmp_path / "data.json", motion)
+    assert read_motion(tmp_path / "data.json").vibration == vibration
+
+
+def test_a_motion_without_a_crank_or_without_mass_has_no_orders() -> None:
+    m = Mechanism("pendulum")
+    arm = m.bar("arm", 1.0, mass=1.0)
+    m.revolute("A", m.ground.origin, arm.start)
+    m.drive_angle("motor", arm, harmonic(0.3, 1.0))
+    assert motion_of(m).vibration is None
+    m = two_cylinders()
+    for name in ("piston_1", "piston_2"):
+        m.bodies[name].mass = 0.0
+    assert motion_of(m).vibration is None

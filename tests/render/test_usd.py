@@ -22,7 +22,7 @@ from shared.contract.materials import MATERIALS
 from shared.contract.shot import Shot
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
-from tests.render.film import test_spirals, test_stretched
+from tests.render.film import test_springs
 from tests.render.film.test_belts import drive, filmed
 from tests.render.glb_file import GlbFile
 from tools.fixtures import film_fixture
@@ -160,13 +160,13 @@ def _of(prim: Usd.Prim, code: float) -> np.ndarray:
 
 @pytest.mark.parametrize("rope", [None, 0.6])
 def test_springs_and_ropes_are_where_the_glb_has_them(out_root: Path, rope: float | None) -> None:
-    film = test_stretched.film() if rope is None else test_stretched.film(rope=rope)
+    film = test_springs.film() if rope is None else test_springs.film(rope=rope)
     names = same_as_glb(film, out_root)
     assert len(names) > sum(len(pieces) for pieces in film_fixture.solids().values())
 
 
 def test_a_torsion_spring_winds_as_in_the_glb(out: Out) -> None:
-    motion = test_spirals.with_spring(read_motion(out.motion))
+    motion = test_springs.with_spring(read_motion(out.motion))
     film = Film(motion, read_parts(out.parts), Shot(), out.parts_folder)
     assert "spring" in same_as_glb(film, out.folder)
 

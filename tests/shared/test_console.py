@@ -17,6 +17,10 @@ from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
 from shared.stage.signals import Stopped
 
+NO_MEMORY = (
+    "error: the memory ran out; close other programs or take a smaller preset. The same command goes on from here\n"
+)
+
 
 def test_say_and_warn_are_one_plain_line_in_a_log(capsys: pytest.CaptureFixture[str]) -> None:
     console.say("parts", "four_bar: 5 solids, [bold] 0.412 kg")
@@ -119,6 +123,8 @@ def test_a_terminal_gets_colour_and_a_bar() -> None:
             "error: cannot use /no/such/x: Read-only file system; make file and folder accessible or set MBSD_OUT to "
             "another folder\n",
         ),
+        (MemoryError(), 1, NO_MEMORY),
+        (RuntimeError("can't start new thread"), 1, NO_MEMORY),
     ],
 )
 def test_run_cli_words_what_a_user_can_cause(
@@ -140,7 +146,9 @@ def test_run_cli_exits_with_the_result(result: int | None, code: int) -> None:
     assert exit_.value.code == code
 
 
-@pytest.mark.parametrize("fault", [ZeroDivisionError(), OSError(errno.ECHILD, "No child processes")], ids=repr)
+@pytest.mark.parametrize(
+    "fault", [ZeroDivisionError(), RuntimeError("odd"), OSError(errno.ECHILD, "No child processes")], ids=repr
+)
 def test_run_cli_does_not_hide_a_fault_of_ours(fault: Exception) -> None:
     def main() -> None:
         raise fault

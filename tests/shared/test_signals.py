@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from mbsd.drawing.animation.words import QUANTITIES, TRAIL, WEIGHTS
-from mbsd.drawing.inks import INKS, apart, neutral_inks, on_dark
+from mbsd.drawing.look import INKS, apart, neutral_inks, on_dark
 from render.film.pieces import neutral
 from render.film.scene import SurfaceSpec
 from render.view.bundle import PAGE, node

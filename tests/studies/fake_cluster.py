@@ -10,8 +10,8 @@ from contextlib import suppress
 from types import SimpleNamespace
 from typing import Any
 
-from mbsd.studies import dealt
-from mbsd.studies.answers import answer_of
+from mbsd.studies import orders
+from mbsd.studies.orders import answer_of
 
 Acts = Callable[..., Any]
 """What a worker answers for the arguments of its task: of a study functions, numbered points, and nothing."""
@@ -56,7 +56,7 @@ class FakeClient:
         if workers[0].startswith("silent"):
             threading.Event().wait(60.0)
         if workers[0].startswith("other"):
-            return {workers[0]: json.dumps(dealt.identity() | {"numpy": "0.1"}).encode()}
+            return {workers[0]: json.dumps(orders.identity() | {"numpy": "0.1"}).encode()}
         return {workers[0]: function()}
 
     def nbytes(self, keys: list[str], summary: bool) -> dict[str, int]:

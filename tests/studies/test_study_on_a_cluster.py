@@ -17,7 +17,7 @@ from pandas.testing import assert_frame_equal
 
 import mbsd
 from mbsd import Mechanism, ModelError
-from mbsd.studies import dealt
+from mbsd.studies import orders
 
 LENGTHS = {"length": [0.1, 0.2, 0.3, -0.1, 0.5, 0.6]}
 QUIET = {"progress": False, "folder": None}
@@ -95,8 +95,8 @@ def test_a_point_that_ends_workers_is_told(client: Any) -> None:
 
 
 def test_workers_with_other_versions_are_refused_by_name(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    ours = dealt.identity() | {"numpy": "1.0"}
-    monkeypatch.setattr(dealt, "identity", lambda: ours)
+    ours = orders.identity() | {"numpy": "1.0"}
+    monkeypatch.setattr(orders, "identity", lambda: ours)
     with (
         warnings.catch_warnings(),
         pytest.raises(ModelError, match=r"; tcp://[\d.:]+.*: numpy .*, here 1.0; start workers"),

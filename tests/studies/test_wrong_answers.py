@@ -21,11 +21,10 @@ from pandas.testing import assert_frame_equal
 import mbsd
 from mbsd import Mechanism, ModelError
 from mbsd.dealing import deal
-from mbsd.dealing.report import Report, encoded, read_report
-from mbsd.dealing.wrong_answer import WrongAnswer
+from mbsd.dealing.report import Report, WrongAnswer, encoded, read_report
 from mbsd.dependencies.inputs import Inputs
-from mbsd.studies import dealt, work
-from mbsd.studies.answers import answer_of, reader
+from mbsd.studies import orders, work
+from mbsd.studies.orders import answer_of, reader
 from mbsd.studies.work import Order
 from tests.studies.fake_cluster import Acts, FakeClient, Held
 
@@ -128,7 +127,7 @@ def test_where_all_lie_the_study_ends_with_their_names() -> None:
 def test_a_worker_that_never_answers_keeps_nothing_back(
     after: str, monkeypatch: pytest.MonkeyPatch, alone: Any
 ) -> None:
-    monkeypatch.setattr(dealt, "FAR", replace(dealt.FAR, **{after: 0.3}))
+    monkeypatch.setattr(orders, "FAR", replace(orders.FAR, **{after: 0.3}))
 
     def hangs(*_: Any) -> None:
         threading.Event().wait(60.0)
@@ -139,7 +138,7 @@ def test_a_worker_that_never_answers_keeps_nothing_back(
 @pytest.mark.filterwarnings("ignore:study")
 def test_points_that_take_longer_than_all_patience_are_waited_for(monkeypatch: pytest.MonkeyPatch, alone: Any) -> None:
     """A worker that is silent may be at work on a long point: a study ends for no such reason."""
-    monkeypatch.setattr(dealt, "FAR", replace(dealt.FAR, unknown=0.05, patience=0.05, times=0.1))
+    monkeypatch.setattr(orders, "FAR", replace(orders.FAR, unknown=0.05, patience=0.05, times=0.1))
     monkeypatch.setattr(deal, "WAIT", 0.1)
 
     def slow(order: Order, points: Numbered, sent: Any) -> bytes:
@@ -150,7 +149,7 @@ def test_points_that_take_longer_than_all_patience_are_waited_for(monkeypatch: p
 
 
 def test_the_first_answer_counts_and_a_late_one_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(dealt, "FAR", replace(dealt.FAR, unknown=0.1))
+    monkeypatch.setattr(orders, "FAR", replace(orders.FAR, unknown=0.1))
     wakes, came = threading.Event(), threading.Event()
 
     def late(_: Any, points: Numbered, __: Any) -> bytes:

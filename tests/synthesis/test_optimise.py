@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-import mbsd.synthesis.moves
+import mbsd.synthesis.evaluation
 from mbsd import Mechanism, ModelError, constant_rate, optimise
 from mbsd.measures import final, largest, smallest
 
@@ -132,7 +132,7 @@ def test_what_cannot_be_asked_is_refused_before_anything_runs(
     def ran(*given: Any) -> None:
         raise AssertionError("it ran")
 
-    monkeypatch.setattr(mbsd.synthesis.moves.Moves, "_tangents", ran)
+    monkeypatch.setattr(mbsd.synthesis.evaluation.Moves, "_tangents", ran)
     given = {"objective": "closer.stiffness", "vary": {"closer.stiffness": (1, 100)}, "duration": 1.0} | asked
     if "vary" in asked or "build" in asked:
         given["objective"] = largest("rod.omega") if "objective" not in asked else asked["objective"]

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, constant_rate
-from mbsd.synthesis.designs import Designs
-from mbsd.synthesis.path_tangents import tangents_of_path
-from mbsd.synthesis.residuals import Residuals
+from mbsd.synthesis.designs import Designs, tangents_of_path
+from mbsd.synthesis.least_squares import Residuals
 from mbsd.synthesis.target import Target
-from mbsd.synthesis.varied import varied
+from mbsd.synthesis.variables import varied
 
 GRID = np.linspace(0.0, 1.0, 25)
 
@@ -62,7 +61,7 @@ def test_tangents_are_those_of_sweeps(build: Any, vary: Any) -> None:
     x = designs.varied.low + 0.4 * (designs.varied.high - designs.varied.low)
     paths, angles = tangents_of_path(designs, x, GRID)
     assert len(angles) == len(designs.turned)
-    h = 1e-3
+    h = 1e-4
     for k in range(len(x)):
         step = h * np.eye(len(x))[k]
         ahead, behind, far, back = designs(np.array([x + step, x - step, x + 2 * step, x - 2 * step]), True).path
@@ -74,11 +73,11 @@ def test_designs_beside_one_differ_as_their_sweeps_do() -> None:
     vary = {"left": (0.2, 0.3), "right": (0.2, 0.3)}
     designs = Designs(geared(), varied("geared", vary), None, "P", {True: GRID, False: GRID}, False)
     x, steps = np.array([[0.24, 0.26]]), np.array([[1e-5, -1e-5]])
-    beside, swept = designs.beside(x, steps, True), designs(x + steps[0][:, None] * np.eye(2), True)
-    assert beside.closes.all()
-    assert np.abs(beside.path - swept.path).max() < 1e-9
-    assert np.abs(beside.transmission - swept.transmission).max() < 1e-8
-    assert designs.evaluations == 2  # beside counts none
+    neighbours, swept = designs.neighbours(x, steps, True), designs(x + steps[0][:, None] * np.eye(2), True)
+    assert neighbours.closes.all()
+    assert np.abs(neighbours.path - swept.path).max() < 1e-9
+    assert np.abs(neighbours.transmission - swept.transmission).max() < 1e-8
+    assert designs.evaluations == 2  # neighbours counts none
 
 
 def test_slopes_of_residuals_are_the_same_whatever_the_bounds() -> None:

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, ModelError, constant_rate, fit_path
-from mbsd.synthesis.matching import feet_in_order, in_order
+from mbsd.synthesis.target import feet_in_order, in_order
 
 PUBLISHED = Path(__file__).parents[1] / "published" / "reference" / "path_generation_four_bars.json"
 CASES = json.loads(PUBLISHED.read_text())

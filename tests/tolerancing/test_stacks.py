@@ -11,7 +11,7 @@ import pytest
 from scipy.stats import binomtest, norm
 
 from mbsd import Normal, Triangular, Uniform, tolerances
-from mbsd.tolerancing.statistics.yields import wilson
+from mbsd.tolerancing.statistics import wilson
 
 CASE = json.loads((Path(__file__).parents[1] / "published/reference/shigley_stack.json").read_text())
 TOLERANCES = CASE["tolerances"]

@@ -16,8 +16,7 @@ from mbsd import four_stroke
 from mbsd.machines.engines.bank_angles import ORDERS, BankAngles, all_families
 from mbsd.machines.engines.firing import firing
 from mbsd.machines.engines.free_forces import free_forces
-from mbsd.machines.engines.layout import Layout
-from mbsd.machines.engines.named import named
+from mbsd.machines.engines.layout import Layout, named
 from shared.stage.files import write_bytes
 from shared.stage.paths import out_root
 from tools.documents.pages import DOCS, replaced

@@ -19,9 +19,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from mbsd import Mechanism, four_stroke, study
-from mbsd.machines.engines.block import Block, mounts_of_frequency
+from mbsd.machines.engines.block import Block, mount_response, mounts_of_frequency
 from mbsd.machines.engines.engine import engine
-from mbsd.machines.engines.mount_response import mount_response
 from mbsd.machines.engines.run_up import run_up
 from shared.stage.files import write_bytes
 from shared.stage.paths import out_root

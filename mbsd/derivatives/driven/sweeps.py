@@ -11,10 +11,9 @@ import numpy as np
 from mbsd.arrays.reactions import wrenches
 from mbsd.base.errors import ModelError
 from mbsd.derivatives.driven.tangents import Inverse, Tangent, has_kinks, tangent
-from mbsd.derivatives.numbers.terms import Along, Terms, terms_of
+from mbsd.derivatives.numbers.terms import Along, Terms, along_of, terms_of
 from mbsd.derivatives.numbers.variants import KINKED, STEP, Variant, Variants, Variation, models_of
 from mbsd.derivatives.refused_motions import refuse_parted
-from mbsd.derivatives.solution_rows import along_of
 from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.states_along import states_along
 from mbsd.model.mechanism import Model

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.derivatives.driven.beside import differ, displace
+from mbsd.derivatives.driven.differences import differ, displace
 from mbsd.derivatives.numbers.terms import Along, Change, Left, Terms, stacked
 from mbsd.derivatives.numbers.variants import FOURTH, STEP, Variant, Variants
 from mbsd.derivatives.refused_motions import fits_alone

@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from mbsd.compiling.jit import internal, kernel
-from mbsd.derivatives.driven.beside import (
+from mbsd.derivatives.driven.differences import (
     accelerate,
     close_state,
     couple,

@@ -10,11 +10,14 @@ stuck, whatever that is. Source: Haug, Ehle, Mech. Mach. Theory 17 (1982); Wehag
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mbsd.derivatives.driven.beside import accelerate_along, close, combine
+from mbsd.arrays.curve_branches import CurveBranches
+from mbsd.arrays.laws import pack_laws
+from mbsd.arrays.loads import pack_loads
+from mbsd.derivatives.driven.differences import accelerate_along, close, combine
 from mbsd.derivatives.driven.tangents import (
     LOOSE,
     along_directions,
@@ -26,10 +29,8 @@ from mbsd.derivatives.driven.tangents import (
     shortened,
     steps_along,
 )
-from mbsd.derivatives.free.compiled_nodes import can_differentiate, differentiated
-from mbsd.derivatives.free.differentiated import Made, Nodes, Own
+from mbsd.derivatives.free.differentiated import Made, Nodes, Own, Scratch, differentiate
 from mbsd.derivatives.free.linear_motion import NODES, carried
-from mbsd.derivatives.free.stretch import Carried, Stretch, Tangents, joined
 from mbsd.derivatives.numbers.terms import Along, Change, Left, Terms
 from mbsd.derivatives.numbers.variants import Variants
 
@@ -41,6 +42,63 @@ AT_ONCE = 800
 """Nodes at once."""
 WORST = 30.0
 """Condition of [J; Z] beyond which another Z is taken."""
+
+
+@dataclass
+class Stretch:
+    """T times of a motion between two events, nodes and others, with the rows that hold there."""
+
+    along: Along
+    compact: np.ndarray
+    """(T, m, 6) J."""
+    rows: np.ndarray
+    """Independent rows that hold."""
+    dependent: list[tuple[int, int]]
+    """Rows of sliding and of the gap whose normal force makes their friction."""
+    asked: np.ndarray
+    """(T,) whether tangents are wanted there."""
+    nodes: np.ndarray
+    """(T,) whether it is one of the nodes of whole steps, the first and the last among them."""
+    solved: bool = True
+    """Whether accelerations and multipliers are known; else accelerations are about what they will be."""
+    own: Left | None = None
+    """How the equations change with P numbers at the held motion, (P, T, ...), where that is known."""
+
+
+@dataclass
+class Tangents:
+    """By P numbers: how a motion changes with them at R times. (P, R, 3 nb), (P, R, m)."""
+
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    lam: np.ndarray
+
+    def parts(self) -> tuple[np.ndarray, ...]:
+        """All of it."""
+        return self.q, self.v, self.a, self.lam
+
+
+@dataclass
+class Carried:
+    """Tangents along some nodes."""
+
+    asked: Tangents
+    """Where they were asked for."""
+    q: np.ndarray
+    """(P, 3 nb) q' at the last node."""
+    v: np.ndarray
+    lam: np.ndarray
+    """(P, m) lam' there."""
+    errors: np.ndarray
+    """(d, 2) what each step adds, and what it leaves out inside alone, as parts of the largest so far."""
+    off: float
+    """By how much accelerations were other than about what was known, as part of the largest."""
+
+
+def joined(parts: list[Tangents]) -> Tangents:
+    """One stretch after the other."""
+    return Tangents(*(np.concatenate(own, axis=1) for own in zip(*(part.parts() for part in parts), strict=True)))
 
 
 def slight_changes(f: int, fastest: float, sizes: np.ndarray) -> np.ndarray:
@@ -327,3 +385,41 @@ def _ratio(along: Along, way: int, gap: int) -> np.ndarray:
 def _wide(x: np.ndarray) -> np.ndarray:
     """(..., 3 nb) with ground's zeros before (..., n)."""
     return np.concatenate([np.zeros((*x.shape[:-1], 3)), x], axis=-1)
+
+
+def differentiated(
+    terms: Terms, nodes: Nodes, own: Own, per_size: np.ndarray, per_speed: float, reach: np.ndarray, asked: np.ndarray
+) -> Made:
+    """Return what ``differentiate`` makes; ``asked`` (R,) are the nodes of which everything is wanted."""
+    packed, (count, n, f), numbers = terms.packed, nodes.free.shape, len(own.load)
+    rows, width = nodes.lam.shape[1], nodes.q.shape[1]
+    ways, first = 2 * f + len(own.moving), f + len(own.moving)
+    scratch = Scratch(
+        np.zeros(width), np.zeros(ways), np.zeros((ways + 1, width)), np.zeros((ways + 1, width)),
+        np.zeros((ways + 1, width)), np.zeros((ways + 1, rows)), np.zeros(rows), np.zeros(n),
+        np.zeros((f + 1, max(1, f))), np.zeros((f, len(nodes.rows))), np.zeros((2 * first, width)),
+        np.zeros((2 * ways, width)),
+        np.zeros((2 * ways, width)), np.zeros((2 * ways, width)), np.zeros(2 * ways), np.zeros(2 * ways),
+        np.zeros((2 * ways, *nodes.drives.shape[1:])), np.zeros((2 * ways, rows)), np.zeros((2 * ways, rows)),
+        np.zeros((2 * ways, rows, 6)),
+    )  # fmt: skip
+    all_ways = 2 * f + numbers
+    made = Made(
+        np.zeros((count, f, 2 * f)), np.zeros((count, f, numbers)),
+        *(np.zeros((all_ways, len(asked), size)) for size in (width, width, width, rows)),
+    )  # fmt: skip
+    slots = np.full(count, -1)
+    slots[asked] = np.arange(len(asked))
+    loads = pack_loads(packed) if terms.loads is None else terms.loads
+    laws = pack_laws(()) if terms.laws is None else terms.laws
+    differentiate(
+        packed.system, loads, laws, packed.ws, nodes, own, terms.inertia[3:], per_size, per_speed, reach, slots,
+        scratch, made,
+    )  # fmt: skip
+    packed.specials.check()
+    return made
+
+
+def can_differentiate(terms: Terms) -> bool:
+    """Return True if ``differentiate`` knows the mechanism: no friction in joints, and no curve that crosses itself."""
+    return not terms.rough and not CurveBranches(terms.packed)

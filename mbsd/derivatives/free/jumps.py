@@ -178,11 +178,9 @@ def fill_by_numbers(whole: Whole, along: Along, jumps: Sequence[Jump]) -> None:
         t, q, v = along.t[rows], along.q[rows], along.v[rows]
         for p, variants in enumerate(whole.variants):
             if own[0].changes_with(variants):
-                every = zip(variants.variants, variants.weights, strict=True)
-                slope = (
-                    sum(weight * _bounced_with(variant, plain, t, q, v) for variant, weight in every) / variants.step
-                )
-                for jump, part in zip(own, slope, strict=True):
+                bounces = np.array([_bounced_with(variant, plain, t, q, v) for variant in variants.variants])
+                slopes = np.tensordot(variants.weights, bounces, axes=1) / variants.step
+                for jump, part in zip(own, slopes, strict=True):
                     jump.by_numbers[p] = part
 
 

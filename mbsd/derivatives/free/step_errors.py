@@ -8,8 +8,8 @@ import numpy as np
 
 from mbsd.base.errors import ModelWarning
 from mbsd.base.warning import warn
+from mbsd.derivatives.free.free_tangents import Tangents
 from mbsd.derivatives.free.mesh import refined
-from mbsd.derivatives.free.stretch import Tangents
 
 ENOUGH = 5e-6
 """Error of tangents, as part of the largest, beyond which nodes come closer."""

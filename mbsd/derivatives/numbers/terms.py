@@ -25,6 +25,7 @@ from mbsd.dynamics.switches import standing
 from mbsd.equations.laws import Laws
 from mbsd.equations.loads import Loads
 from mbsd.equations.products import leave
+from mbsd.results.solution import Solution
 
 
 @dataclass
@@ -201,3 +202,17 @@ def terms_of(
     if not packed.forces or not loads:
         return Terms(packed, None, None, inertia, weight)
     return Terms(packed, laws or compiled_laws(packed, *span), known or pack_loads(packed), inertia, weight)
+
+
+def along_of(sol: Solution) -> Along:
+    """A solution as arrays."""
+    q, v, a = (np.ascontiguousarray(part.reshape(len(sol.t), -1)) for part in (sol.q, sol.v, sol.a))
+    return Along(sol.t if sol.law_times is None else sol.law_times, q, v, a, sol.lam, sol.states, sol.approached)
+
+
+def rows_of(sol: Solution, rows: np.ndarray) -> Solution:
+    """Some rows of a solution."""
+    keys = ("t", "q", "v", "a", "wrench", "lam", "drives", "work", "held", "law_times", "approached", "states")
+    parts = {key: getattr(sol, key)[rows] for key in keys if getattr(sol, key) is not None}
+    margin = sol.margin if callable(sol.margin) else sol.margin[rows]
+    return replace(sol, margin=margin, between=None, **parts)

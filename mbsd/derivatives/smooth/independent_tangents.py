@@ -13,15 +13,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from mbsd.derivatives.free.free_tangents import REACH, at_rows, slight_changes
+from mbsd.derivatives.free.free_tangents import REACH, Stretch, Tangents, at_rows, slight_changes
 from mbsd.derivatives.free.linear_motion import Carried, carried
-from mbsd.derivatives.free.stretch import Stretch, Tangents
-from mbsd.derivatives.numbers.number_steps import step_of
 from mbsd.derivatives.numbers.terms import Along, Terms
-from mbsd.derivatives.numbers.variants import ALLOWED, FAR, TINY, Variants
+from mbsd.derivatives.numbers.variants import ALLOWED, FAR, TINY, Variants, step_of
 from mbsd.derivatives.smooth.between_looks import between_looks
-from mbsd.derivatives.smooth.forces_beside import slopes_of_forces
-from mbsd.derivatives.smooth.rates_beside import FIRST, Held, motions_beside, rates_beside
+from mbsd.derivatives.smooth.held_motion import FIRST, Held, motions_beside, rates_beside, slopes_of_forces
 from mbsd.derivatives.smooth.sides import BothSides, Sides, forces_beside
 from mbsd.derivatives.smooth.smooth_motion import CLOSE, NotSmooth
 from mbsd.dynamics.independent.arrays import Embedding
@@ -154,10 +151,10 @@ class IndependentTangents:
         own = np.array([accelerations or p not in self.both.light for p in of])
         light = np.flatnonzero(~own)
         if len(light):
-            many = [np.concatenate([part] * len(light)) for part in (along.t, along.q, z)]
+            t, q, base = (np.concatenate([part] * len(light)) for part in (along.t, along.q, z))
             system, given = packed.system, states[light].reshape(-1, *states.shape[2:])
             there, rest = poses[light].reshape(-1, 2, width), a[light].reshape(-1, width)
-            self._move(self.arrays, system.mass, system.inertia, (*many, given), False, there, rest)
+            self._move(self.arrays, system.mass, system.inertia, (t, q, base, given), False, there, rest)
             poses[light] = there.reshape(len(light), *poses.shape[1:])
         for s in np.flatnonzero(own).tolist():
             arrays, here = every[of[s]].arrays[s - of.index(of[s])], (along.t, along.q, z, states[s])

@@ -12,10 +12,9 @@ import numpy as np
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.packing import Packed
 from mbsd.derivatives.numbers.near_numbers import Near, NearNumbers
-from mbsd.derivatives.numbers.number_steps import step_of
 from mbsd.derivatives.numbers.start_tangents import StartTangents
-from mbsd.derivatives.numbers.variants import SECOND, TINY, Variant, Variants, Variation
-from mbsd.derivatives.smooth.forces_beside import ForcesBeside
+from mbsd.derivatives.numbers.variants import SECOND, TINY, Variant, Variants, Variation, step_of
+from mbsd.derivatives.smooth.held_motion import ForcesBeside
 from mbsd.derivatives.smooth.smooth_motion import NotSmooth
 from mbsd.dynamics.independent.arrays import Embedding
 from mbsd.dynamics.independent.coordinates import choices

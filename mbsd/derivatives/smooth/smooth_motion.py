@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.derivatives.free.mesh import longest_steps, looked_at_closer
-from mbsd.derivatives.numbers.terms import Along, Terms, terms_of
+from mbsd.derivatives.numbers.terms import Along, Terms, along_of, rows_of, terms_of
 from mbsd.derivatives.smooth.between_looks import between_looks
-from mbsd.derivatives.solution_rows import along_of, rows_of
 from mbsd.dynamics.repeated import Course, Repeated
 from mbsd.results.solution import Solution
 

@@ -13,10 +13,10 @@ from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such, shown
 from mbsd.drawing.animation.clip import HOLD, clip_of
 from mbsd.drawing.animation.encoders import ffmpeg, held, write_gif, write_mp4
-from mbsd.drawing.animation.picture.page import Page
+from mbsd.drawing.animation.page import Page
 from mbsd.drawing.animation.scene import scene_of
 from mbsd.drawing.animation.words import EVERYTHING, QUANTITIES
-from mbsd.drawing.literal import literal
+from mbsd.drawing.look import literal
 from mbsd.pictures import Animation
 from mbsd.results.solution import Solution
 
@@ -90,7 +90,7 @@ def _target(name: str, path: object) -> tuple[Path, str]:
 
 
 def _groups(name: str, show: object) -> tuple[tuple[str, ...], ...]:
-    """The words of each panel."""
+    """Return the words of each panel."""
     if isinstance(show, str) and show == "all":
         return EVERYTHING
     words: list[str] = [show] if isinstance(show, str) else []

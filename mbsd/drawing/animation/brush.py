@@ -34,7 +34,7 @@ class View:
     """Pixels of the world's origin."""
 
     def pixels(self, points: Point | Sequence[Point]) -> np.ndarray:
-        """(k, 2) of points in metres."""
+        """Return (k, 2) of points in metres."""
         return np.asarray(points, float) * self.scale + (self.left, self.low)
 
 
@@ -48,7 +48,8 @@ class Mark:
     fill: Colour | None
     width: float
     """Points."""
-    dash: Any
+    dash: Sequence[float]
+    """Strokes and gaps in widths; empty: solid."""
 
 
 @dataclass(eq=False)
@@ -67,32 +68,26 @@ class Brush(Canvas):
     remembers: bool = False
     """Whether obstacles for names are kept."""
 
-    def line(
-        self, points: Sequence[Point] | Point, colour: str = INK, width: float = 1.4, order: float = 4, **more: Any
-    ) -> None:
-        """A polyline (m)."""
-        points = np.asarray(points, float)
-        self.keep(points)
-        dash = more.get("linestyle", (0, None))
-        ink = rgba(self._own(colour), more.get("alpha", 1.0))
-        self._add(self.view.pixels(points), False, ink, None, self.thin * width, order, dash)
-
-    def shape(
+    def _draw(
         self,
-        points: Point,
-        edge: str = INK,
-        fill: str = PAPER,
-        width: float = 1.4,
-        order: float = 4,
-        alpha: float = 1.0,
+        path: Point,
+        closed: bool,
+        ink: str,
+        fill: str | None,
+        alpha: float,
+        width: float,
+        order: float,
+        dash: Sequence[float] = (),
     ) -> None:
-        """A closed outline (m)."""
-        if order == 2 and edge in self.tints:
-            fill, alpha = self.tints[edge]
-        self.keep(points)
-        filled = rgba(self._own(fill), alpha) if alpha > 0 else None
-        ink = rgba(self._own(edge)) if width > 0 else None
-        self._add(self.view.pixels(points), True, ink, filled, self.thin * width, order)
+        """Collect a polyline, or an outline (k, 2) that may be filled."""
+        self.keep(path)
+        edge, filled = rgba(self._own(ink), 1.0 if closed else alpha), None
+        if fill is not None:
+            if order == 2 and ink in self.tints:
+                fill, alpha = self.tints[ink]
+            filled = rgba(self._own(fill), alpha) if alpha > 0 else None
+            edge = edge if width > 0 else None
+        self._add(self.view.pixels(path), closed, edge, filled, self.thin * width, order, dash)
 
     def _own(self, colour: str) -> str:
         return self.driver if colour == MOVED else colour
@@ -105,10 +100,10 @@ class Brush(Canvas):
         ring = Path.make_compound_path(
             Path(self.view.pixels(outer), closed=True), Path(self.view.pixels(inner[::-1]), closed=True)
         )
-        self.marks.append(Mark(1.7, ring, rgba(colour), rgba(colour, 0.12), 1.3 * self.thin, (0, None)))
+        self.marks.append(Mark(1.7, ring, rgba(colour), rgba(colour, 0.12), 1.3 * self.thin, ()))
 
     def label(self, text: str, anchor: Point, clearance: float, colour: str = INK, size: float = 10.0) -> None:
-        """A name; those that share a place are not joined, because they may part. Drivers, which turn, get none."""
+        """Keep a name, even if others share its place, because they may part. Drivers, which turn, get none."""
         if colour != MOVED:
             self.labels.append(Label(text, anchor, clearance, colour, size))
 
@@ -118,7 +113,7 @@ class Brush(Canvas):
             self.labels.append(Label(name, anchor, 0.0, INK, 0.0))
 
     def keep(self, path: Point) -> None:
-        """Only while places for names are looked for: a point every half unit."""
+        """Keep a point every half unit as an obstacle, while places for names are sought."""
         if not self.remembers or len(path) < 2:
             return
         path = np.asarray(path, float)
@@ -129,11 +124,11 @@ class Brush(Canvas):
         self.obstacles.append(np.vstack([path[piece] + part[:, None] * gaps[piece], path[-1:]]))
 
     def plate(self, pixels: np.ndarray, fill: Colour | None, edge: Colour | None, width: float, order: float) -> None:
-        """A closed outline in pixels."""
+        """Collect a closed outline in pixels."""
         self._add(pixels, True, edge, fill, width, order)
 
     def stroke(self, pixels: np.ndarray, colour: Colour, width: float, order: float) -> None:
-        """A polyline in pixels."""
+        """Collect a polyline in pixels."""
         self._add(pixels, False, colour, None, width, order)
 
     def paint(self, renderer: Any, others: Sequence[Mark] = (), shift: tuple[float, float] = (0.0, 0.0)) -> None:
@@ -148,10 +143,9 @@ class Brush(Canvas):
             gc.set_foreground(mark.edge or (0, 0, 0, 0), isRGBA=True)
             gc.set_capstyle("round")
             gc.set_joinstyle("round")
-            offset, dashes = mark.dash
-            if dashes is not None and len(dashes):
+            if mark.dash:
                 scale = renderer.points_to_pixels(mark.width)
-                gc.set_dashes(offset * scale, [length * scale for length in dashes])
+                gc.set_dashes(0, [length * scale for length in mark.dash])
                 gc.set_capstyle("butt")
             renderer.draw_path(gc, mark.path, way, mark.fill)
             gc.restore()
@@ -165,7 +159,7 @@ class Brush(Canvas):
         fill: Colour | None,
         width: float,
         order: float,
-        dash: Any = (0, None),
+        dash: Sequence[float] = (),
     ) -> None:
         from matplotlib.path import Path
 
@@ -177,7 +171,7 @@ class Brush(Canvas):
 
 
 def rgba(colour: str, alpha: float = 1.0) -> Colour:
-    """Red, green, blue and alpha of a hexadecimal colour, 0 .. 1."""
+    """Return red, green, blue and alpha of a hexadecimal colour, 0 .. 1."""
     return (int(colour[1:3], 16) / 255, int(colour[3:5], 16) / 255, int(colour[5:7], 16) / 255, alpha)
 
 
@@ -190,7 +184,7 @@ def arrow(
     cut: bool = False,
     head: Head = "solid",
 ) -> None:
-    """An arrow of ``vector`` pixels with a thin halo; ``size``: thickness of its shaft (pixels).
+    """Draw an arrow of ``vector`` pixels with a thin halo; ``size``: thickness of its shaft (pixels).
 
     ``cut``: two strokes across say that it is longer. Its head says what it stands for (words.py).
     """
@@ -213,7 +207,7 @@ def arrow(
 
 
 def _outlines(length: float, point: float, half: float, head: Head) -> list[np.ndarray]:
-    """Closed outlines of an arrow along x: its shaft, then its points; ``half`` is that of the shaft's thickness."""
+    """Return closed outlines of an arrow along x: shaft, then points; ``half``: of the shaft's thickness."""
     solid, wide = head.startswith("solid"), 0.36 * point
     neck = length - (point if solid else 1.2 * half)
     out = [np.array([(0.0, half), (neck, half), (neck, -half), (0.0, -half)])]
@@ -231,7 +225,7 @@ def _outlines(length: float, point: float, half: float, head: Head) -> list[np.n
 
 
 def arc(brush: Brush, centre: np.ndarray, radius: float, sweep: float, colour: str, size: float) -> None:
-    """An arc of ``sweep`` rad about ``centre`` (pixels) from below, with a head; positive counter-clockwise."""
+    """Draw an arc of ``sweep`` rad about ``centre`` (pixels) from below, with a head; positive counter-clockwise."""
     if abs(sweep) * radius < 1.5 * size:
         return
     head = min(4.2 * size, 0.7 * abs(sweep) * radius)
@@ -252,5 +246,5 @@ def arc(brush: Brush, centre: np.ndarray, radius: float, sweep: float, colour: s
 
 
 def fresh(brush: Brush, **more: Any) -> Brush:
-    """A brush like this one with nothing on it."""
+    """Return a brush like this one with nothing on it."""
     return replace(brush, obstacles=[], supports=[], labels=[], marks=[], **more)

@@ -33,7 +33,7 @@ SAMPLED = 6
 
 
 def ffmpeg() -> str:
-    """The program that imageio-ffmpeg brings, or the system's. Raises ModelError if there is none."""
+    """Return the program that imageio-ffmpeg brings, or the system's. Raises ModelError if there is none."""
     try:
         import imageio_ffmpeg
 
@@ -48,7 +48,7 @@ def ffmpeg() -> str:
 
 
 def write_mp4(path: Path, pictures: Iterable[np.ndarray], size: tuple[int, int], fps: float, rounds: int) -> None:
-    """From (H, W, 4) bytes of each picture, all of them ``rounds`` times over, encoded once.
+    """Write (H, W, 4) bytes of each picture, all of them ``rounds`` times over, encoded once.
 
     Raises ModelError where ffmpeg fails or the file cannot be written.
     """
@@ -85,7 +85,7 @@ def _run(path: Path, command: list[str], pictures: Iterable[np.ndarray]) -> None
 
 
 def write_gif(path: Path, pictures: Iterable[np.ndarray], count: int, fps: float, hold: float) -> None:
-    """From (H, W, 4) bytes of ``count`` pictures; plays for ever. ``hold``: seconds more for the last one."""
+    """Write (H, W, 4) bytes of ``count`` pictures, to be played for ever. ``hold``: seconds more for the last one."""
     from PIL import Image
 
     kept = [Image.fromarray(np.ascontiguousarray(picture[..., :3])) for picture in pictures]
@@ -106,7 +106,7 @@ def write_gif(path: Path, pictures: Iterable[np.ndarray], count: int, fps: float
 
 
 def _palette(strip: Any) -> Any:
-    """The colours that mean something as they are, and the others of ``strip`` that are met most."""
+    """Return the colours that mean something as they are, and the others of ``strip`` that are met most."""
     from PIL import Image
 
     plain = [int(colour[k : k + 2], 16) for colour in EXACT for k in (1, 3, 5)]
@@ -117,7 +117,10 @@ def _palette(strip: Any) -> Any:
 
 
 def _indexed(picture: Any, palette: Any) -> Any:
-    """Pillow looks for near colours in steps of four; those of :data:`EXACT` are put right."""
+    """Return the picture by numbers of ``palette``.
+
+    Pillow seeks near colours in steps of four; those of :data:`EXACT` are corrected.
+    """
     from PIL import Image
 
     indexed = picture.quantize(palette=palette, dither=Image.Dither.NONE)
@@ -131,7 +134,7 @@ def _indexed(picture: Any, palette: Any) -> Any:
 
 
 def held(pictures: Iterable[np.ndarray], still: int) -> Iterator[np.ndarray]:
-    """All pictures, and the last one ``still`` times more."""
+    """Yield all pictures, and the last one ``still`` times more."""
     picture = np.zeros(0)
     for picture in pictures:
         yield picture

@@ -8,17 +8,13 @@ from functools import cached_property
 
 import numpy as np
 
-from mbsd.drawing.animation.between import at_times
+from mbsd.drawing.animation.arrows import Arc, Arrow, force_arrows, motion_arrows, reaction_arrows
 from mbsd.drawing.animation.brush import Brush, Mark, View, fresh
-from mbsd.drawing.animation.clip import Clip
-from mbsd.drawing.animation.quantities.arrows import Arc, Arrow
-from mbsd.drawing.animation.quantities.flow import Balance, balance_of, flow_arrows
-from mbsd.drawing.animation.quantities.loads import force_arrows, reaction_arrows
-from mbsd.drawing.animation.quantities.motions import motion_arrows
-from mbsd.drawing.inks import body_inks
-from mbsd.drawing.pose import Pose, Tracks, tracks_of
-from mbsd.drawing.skeleton import draw_on
-from mbsd.drawing.steady import Steady, steady_of
+from mbsd.drawing.animation.clip import Clip, at_times
+from mbsd.drawing.animation.flow import Balance, balance_of, flow_arrows
+from mbsd.drawing.look import body_inks
+from mbsd.drawing.pose import Tracks, tracks_of
+from mbsd.drawing.skeleton import Steady, draw_on, steady_of
 from mbsd.results.solution import Solution
 
 LOOKED_AT = 24
@@ -53,38 +49,24 @@ class Scene:
     _drawn: dict[tuple[int, float], Drawn] = field(default_factory=dict)
 
     @property
-    def low(self) -> np.ndarray:
-        """(2,) lowest x, y of the machine over the whole motion (m)."""
-        return self.steady.low
-
-    @property
-    def high(self) -> np.ndarray:
-        """(2,) highest."""
-        return self.steady.high
-
-    @property
-    def unit(self) -> float:
-        """Unit of its symbols (m)."""
-        return self.steady.unit
+    def size(self) -> float:
+        """Larger side of the machine over the whole motion (m)."""
+        return float((self.steady.high - self.steady.low).max())
 
     @property
     def length(self) -> float:
         """Length of the largest arrow (m)."""
-        return LENGTH * max(float((self.high - self.low).max()), 10 * self.unit)
-
-    def pose(self, k: int) -> Pose:
-        """At picture ``k``."""
-        return self.tracks.pose(k)
+        return LENGTH * max(self.size, 10 * self.steady.unit)
 
     def draw(self, brush: Brush, k: int, colours: dict[str, str]) -> None:
-        """The machine at picture ``k``: springs keep their turns, ground its signs, teeth turn with their wheels."""
+        """Draw the machine at picture ``k``: springs keep their turns, ground its signs, teeth turn with wheels."""
         self.steady.ready(
             brush, {name: float(view.theta[k] - view.theta[0]) for name, view in self.tracks.views.items()}
         )
-        draw_on(brush, self.sol.mechanism, self.pose(k), colours, False, self.steady.sides)
+        draw_on(brush, self.sol.mechanism, self.tracks.pose(k), colours, False, self.steady.sides)
 
     def drawn(self, brush: Brush, k: int, colours: dict[str, str]) -> Drawn:
-        """The same as marks, in the scale of ``brush``; panels of one scale share it, unless bodies glow in one."""
+        """Return the machine as marks in the scale of ``brush``; panels of one scale share them, unless bodies glow."""
         key = k, brush.view.scale
         if key in self._drawn and not brush.tints:
             return self._drawn[key]
@@ -98,7 +80,7 @@ class Scene:
         return out
 
     def looked_at(self) -> np.ndarray:
-        """Some pictures over the whole clip."""
+        """Return the numbers of some pictures over the whole clip."""
         return np.unique(np.linspace(0, len(self.clip.times) - 1, LOOKED_AT).round().astype(int))
 
     @cached_property
@@ -107,7 +89,7 @@ class Scene:
         return balance_of(self.sol)
 
     def marks(self, quantities: Sequence[str]) -> list[Arrow | Arc]:
-        """Arrows and arcs of these words of ``show``."""
+        """Return arrows and arcs of these words of ``show``."""
         out: list[Arrow | Arc] = []
         for quantity in quantities:
             out += self._all[quantity]
@@ -127,7 +109,7 @@ class Scene:
     @cached_property
     def floor(self) -> dict[str, float]:
         """By unit, what is nothing but rounding."""
-        size, time = max(float((self.high - self.low).max()), 1e-12), float(np.ptp(self.clip.times))
+        size, time = max(self.size, 1e-12), float(np.ptp(self.clip.times))
         spins = [float(np.abs(view.omega).max()) for view in self.tracks.views.values()]
         speeds = [float(np.hypot(view.vx, view.vy).max()) for view in self.tracks.views.values()]
         spin = max(*spins, 1 / time)
@@ -148,7 +130,7 @@ class Scene:
 
 
 def scene_of(sol: Solution, clip: Clip, inks: Mapping[str, str] | None = None) -> Scene:
-    """Scene of a whole solution, with the same symbols and extent in all pictures.
+    """Return the scene of a whole solution, with the same symbols and extent in all pictures.
 
     ``inks``: colours of bodies, by default those of their roles.
     """

@@ -45,6 +45,6 @@ CARD = "#f7f8fa"
 
 
 def round_below(value: float) -> float:
-    """The largest of ..., 0.1, 0.2, 0.5, 1, 2, 5, 10, ... that is not above ``value`` > 0."""
+    """Return the largest of ..., 0.1, 0.2, 0.5, 1, 2, 5, 10, ... that is not above ``value`` > 0."""
     power = 10.0 ** math.floor(math.log10(value) + 1e-9)
     return next(step for step in (5.0, 2.0, 1.0, 0.5) if step * power <= value * (1 + 1e-9)) * power

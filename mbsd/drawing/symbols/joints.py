@@ -1,6 +1,6 @@
 """The standard symbols of joints and drivers: pin circle, slider block on its guide, slot, weld, rod, arrows.
 
-Those of machines are in wheels.py, rolling.py, cam.py and geneva.py.
+Those of gears and belts are in wheels.py, of cams, Genevas and what rolls in higher_pairs.py.
 
 A kind that has no symbol of its own here gets a dashed line between its markers, so nothing is left out.
 """
@@ -14,10 +14,15 @@ import numpy as np
 from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.carriers import GROUND, along_axes, along_line, at_place, on_body
 from mbsd.drawing.look import INK, MOVED, PAPER, QUIET, WRONG
-from mbsd.drawing.symbols.cam import draw_cam
-from mbsd.drawing.symbols.geneva import draw_geneva
-from mbsd.drawing.symbols.place import Place
-from mbsd.drawing.symbols.rolling import draw_point_on_curve, draw_rack, draw_rolling_disc, draw_rolling_on_curve
+from mbsd.drawing.symbols.geometry import Place, rounded
+from mbsd.drawing.symbols.higher_pairs import (
+    draw_cam,
+    draw_geneva,
+    draw_point_on_curve,
+    draw_rack,
+    draw_rolling_disc,
+    draw_rolling_on_curve,
+)
 from mbsd.drawing.symbols.wheels import draw_belt, draw_gear_pair
 
 PIN = 0.62
@@ -27,7 +32,7 @@ BLOCK = (1.75, 1.05)
 
 
 def draw_joint(canvas: Canvas, place: Place) -> None:
-    """The symbol of a joint or driver, and its name."""
+    """Draw the symbol of a joint or driver, and its name."""
     SYMBOLS.get(place.joint.kind.drawn_as, _link)(canvas, place)
 
 
@@ -42,7 +47,7 @@ def _revolute(canvas: Canvas, place: Place) -> None:
 
 
 def _support(canvas: Canvas, pin: np.ndarray, side: np.ndarray) -> None:
-    """Ground under a pin: a triangle on a hatched line, once where several pins share a place."""
+    """Draw ground under a pin: a triangle on a hatched line, once where several pins share a place."""
     if any(float(np.hypot(*(pin - other))) < 0.2 * canvas.unit for other in canvas.supports):
         return
     canvas.supports.append(pin)
@@ -78,8 +83,6 @@ def _prismatic(canvas: Canvas, place: Place) -> None:
 
 
 def _slot(canvas: Canvas, place: Place) -> None:
-    from mbsd.drawing.symbols.outline import rounded
-
     u = canvas.unit
     a, b = place.range(1.6 * u)
     edge = place.colours.get(place.joint.i.body.name, INK)
@@ -115,7 +118,7 @@ def _distance(canvas: Canvas, place: Place) -> None:
 
 
 def _ends(canvas: Canvas, place: Place) -> None:
-    """The small pins of a rod or an actuator; one on ground with its support."""
+    """Draw the small pins of a rod or an actuator; one on ground with its support."""
     for marker, end in ((place.joint.i, place.i), (place.joint.j, place.j)):
         if marker.body.name == "ground":
             _support(canvas, end, place.free_side)
@@ -124,9 +127,9 @@ def _ends(canvas: Canvas, place: Place) -> None:
 
 
 def _link(canvas: Canvas, place: Place) -> None:
-    """A kind without a symbol of its own."""
+    """Draw a kind without a symbol of its own."""
     with canvas.on(along_line(place.joint.i, place.joint.j)):
-        canvas.line([place.i, place.j], INK, 1.2, order=5, linestyle=(0, (4, 2)))
+        canvas.line([place.i, place.j], INK, 1.2, order=5, dash=(4, 2))
         canvas.label(place.joint.name, (place.i + place.j) / 2, 0.5)
     for marker, end in ((place.joint.i, place.i), (place.joint.j, place.j)):
         with canvas.on(at_place(marker)):
@@ -134,10 +137,10 @@ def _link(canvas: Canvas, place: Place) -> None:
 
 
 def _open(canvas: Canvas, place: Place) -> None:
-    """A joint that does not close: a red line from marker to marker."""
+    """Draw a joint that does not close: a red line from marker to marker."""
     if not place.pose.closed and float(np.hypot(*(place.j - place.i))) > 0.05 * canvas.unit:
         canvas.circle(place.i, PIN, order=8, width=1.5, edge=WRONG)
-        canvas.line([place.i, place.j], WRONG, 1.6, order=9, linestyle=(0, (2, 1.5)))
+        canvas.line([place.i, place.j], WRONG, 1.6, order=9, dash=(2, 1.5))
 
 
 # -- drivers ----------------------------------------------------------------------------------------------------
@@ -167,7 +170,7 @@ def _drive_coordinate(canvas: Canvas, place: Place) -> None:
 
 
 def _drive_distance(canvas: Canvas, place: Place) -> None:
-    """A cylinder from marker i and its rod to marker j."""
+    """Draw a cylinder from marker i and its rod to marker j."""
     u, gap = canvas.unit, place.j - place.i
     length = float(np.hypot(*gap))
     along = gap / length if length > 0 else place.axis

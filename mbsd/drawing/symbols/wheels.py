@@ -23,7 +23,7 @@ RIM = 1.5
 
 
 def draw_gear_pair(canvas: Canvas, joint: Joint | Force, pose: Pose, colours: dict[str, str]) -> None:
-    """Both gears. A gear that is new on the canvas is turned so that its teeth mesh with those of the other."""
+    """Draw both gears. A gear that is new on the canvas is turned until its teeth mesh with the other's."""
     internal = bool(joint.params.get("internal"))
     sized = with_radii(joint.params)
     r_i, r_j = sized["radius_i"], sized["radius_j"]
@@ -62,29 +62,29 @@ def draw_gear_pair(canvas: Canvas, joint: Joint | Force, pose: Pose, colours: di
 
 
 def ring_gear(m: Model, name: str) -> Joint | Force | None:
-    """The mesh of which a body is the ring gear; None for other bodies."""
+    """Return the mesh of which a body is the ring gear; None for other bodies."""
     internal = (joint for joint in (*m.joints.values(), *m.forces.values()) if joint.params.get("internal"))
     return next((joint for joint in internal if joint.i.body.name == name), None)
 
 
 def rim_of(joint: Joint | Force, pose: Pose, unit: float) -> np.ndarray:
-    """Where a ring gear's name belongs: at its rim."""
+    """Return the place of a ring gear's name: at its rim."""
     away = (with_radii(joint.params)["radius_i"] + RIM * unit) * math.sqrt(0.5)
     return pose.place(joint.i) + away * np.array([-1.0, 1.0])
 
 
 def tooth(phase: np.ndarray) -> np.ndarray:
-    """The profile of teeth, -1 .. 1, a tooth at phase 0 (rad, 2 pi a tooth)."""
+    """Return the profile of teeth, -1 .. 1, a tooth at phase 0 (rad, 2 pi a tooth)."""
     return np.clip(1.8 * np.cos(phase), -1.0, 1.0)
 
 
 def tooth_depth(canvas: Canvas, r: float, teeth: int) -> float:
-    """Half the height of the teeth of a gear (m)."""
+    """Return half the height of the teeth of a gear (m)."""
     return 0.3 * min(2 * math.pi * r / teeth, PITCH * canvas.unit)
 
 
 def draw_gear(canvas: Canvas, centre: np.ndarray, r: float, teeth: int, phase: float, colour: str, ring: bool) -> None:
-    """A toothed outline at pitch radius r (m), a tooth where ``teeth`` times angle is ``phase``; ``ring``: inside."""
+    """Draw teeth at pitch radius r (m), one where ``teeth`` times angle is ``phase``; ``ring``: inside."""
     turn = np.linspace(0.0, 2 * math.pi, 8 * teeth + 1)
     depth = tooth_depth(canvas, r, teeth)
     profile = tooth(teeth * turn - phase) * (-1.0 if ring else 1.0)
@@ -95,11 +95,11 @@ def draw_gear(canvas: Canvas, centre: np.ndarray, r: float, teeth: int, phase: f
         return
     canvas.shape(outline[:-1], edge=colour, fill=colour, width=1.3, order=1.8, alpha=0.12)
     pitch_circle = centre + r * np.stack([np.cos(turn), np.sin(turn)], axis=1)
-    canvas.line(pitch_circle, colour, 0.7, order=1.9, linestyle=(0, (8, 2, 2, 2)))
+    canvas.line(pitch_circle, colour, 0.7, order=1.9, dash=(8, 2, 2, 2))
 
 
 def draw_disc(canvas: Canvas, centre: np.ndarray, radius: float, angle: float, colour: str) -> None:
-    """A disc with a spoke that shows how it is turned (rad)."""
+    """Draw a disc with a spoke that shows how it is turned (rad)."""
     turn = np.linspace(0.0, 2 * math.pi, 73)[:-1]
     ring = centre + radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
     canvas.shape(ring, edge=colour, fill=colour, width=1.3, order=1.8, alpha=0.12)
@@ -108,7 +108,7 @@ def draw_disc(canvas: Canvas, centre: np.ndarray, radius: float, angle: float, c
 
 
 def draw_belt(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
-    """Two pulleys and the strands."""
+    """Draw two pulleys and the strands."""
     ends = []
     for marker, key in ((joint.i, "radius_i"), (joint.j, "radius_j")):
         centre, radius = pose.place(marker), with_radii(joint.params)[key]

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from mbsd.base.arguments import positive_number
 from mbsd.base.errors import ModelError
-from mbsd.machines.body.mass_properties import MassProperties, combined
 from mbsd.machines.body.segments import BALL, HEEL, LENGTHS, WINTER, Segment, SegmentTable
 
 GRIP = 0.5
@@ -36,7 +36,7 @@ class Figure:
             raise ModelError(f"figure: the table is a {type(self.table).__name__}; give WINTER or another SegmentTable")
 
     def length(self, limb: str) -> float:
-        """Length of a limb between its joints (m); see LENGTHS in segments.py. Raises ModelError for an unknown one."""
+        """Return a limb's length between its joints (m), by LENGTHS of segments.py. Raises ModelError if unknown."""
         if limb not in LENGTHS:
             raise ModelError(f"figure: there is no length '{limb}'; known: {', '.join(LENGTHS)}")
         return LENGTHS[limb] * self.height
@@ -67,13 +67,13 @@ class Figure:
         return (self.heel + self.toe) / 2
 
     def limb(self, name: str) -> MassProperties:
-        """Shank, thigh, upper arm or forearm of both sides, or the trunk with the head, in the limb's frame."""
+        """Return shank, thigh, upper arm or forearm of both sides, or trunk with head, in the limb's frame."""
         segments: tuple[Segment, ...] = getattr(self.table, name)
         whole = combined(self._along(segment) for segment in segments)
         return whole if name == "trunk" else whole.times(2)
 
     def foot(self) -> MassProperties:
-        """Both feet, flat on the floor, in the frame of the ankle."""
+        """Return both feet, flat on the floor, in the frame of the ankle."""
         ankle, foot = self.length("ankle"), self.length("foot")
         if self.table.from_heel:
             start, end = (self.heel, -ankle), (self.toe, -ankle)
@@ -83,7 +83,7 @@ class Figure:
         return self._along(self.table.foot).placed(*start, angle).times(2)
 
     def lower_leg(self, ankle: float) -> tuple[float, MassProperties]:
-        """Shank and foot of one side as one rigid body, with an ankle that does not move.
+        """Return shank and foot of one side as one rigid body, with an ankle that does not move.
 
         ``ankle`` is the angle between shank and sole (rad), a right angle where one stands. Returns the length from the
         ball of the foot to the knee (m), and the mass properties in the frame whose origin is the ball and whose x axis
@@ -91,8 +91,8 @@ class Figure:
         """
         if not 0.0 < ankle < math.pi:
             raise ModelError(
-                f"figure: an ankle of {math.degrees(ankle):.4g} degrees is none; the angle between shank and sole is "
-                "between 0 and 180 degrees, and 90 where one stands"
+                f"figure: the ankle is {math.degrees(ankle):.4g} degrees; the angle between shank and sole must be "
+                "between 0 and 180, and is 90 in standing"
             )
         shank = self.length("shank")
         ball = complex(BALL * self.length("foot"), -self.length("ankle"))
@@ -103,7 +103,7 @@ class Figure:
         return abs(way), whole.times(0.5)
 
     def arms(self, shoulder: tuple[float, float], hand: tuple[float, float], bend: int = 1) -> MassProperties:
-        """Both arms between two places of one frame (m), as one rigid body.
+        """Return both arms between two places of one frame (m), as one rigid body.
 
         ``bend`` is 1 where the elbow is on the left of the way from the shoulder to the hand, -1 where it is on its
         right. Raises ModelError where the hand is out of reach.
@@ -121,7 +121,7 @@ class Figure:
     def arm_angles(
         self, shoulder: tuple[float, float], hand: tuple[float, float], bend: int = 1
     ) -> tuple[float, float]:
-        """Directions (rad) of upper arm and forearm of a hand that holds something; see :meth:`arms`."""
+        """Return directions (rad) of upper arm and forearm of a hand that holds something; see :meth:`arms`."""
         a, b = self.length("upper_arm"), self.reach
         way = complex(*hand) - complex(*shoulder)
         distance = abs(way)
@@ -140,3 +140,32 @@ class Figure:
         length = segment.length * self.height
         place = segment.start * self.height + segment.com * length
         return MassProperties(mass, (place, 0.0), mass * (segment.gyration * length) ** 2)
+
+
+@dataclass(frozen=True)
+class MassProperties:
+    """Mass properties of a rigid body in the plane: mass (kg), centre of mass (m), inertia about it (kg m^2)."""
+
+    mass: float
+    com: tuple[float, float]
+    inertia: float
+
+    def placed(self, x: float, y: float, angle: float = 0.0) -> MassProperties:
+        """Return the same body turned by ``angle`` (rad) about the origin and moved by (x, y) (m)."""
+        c, s = math.cos(angle), math.sin(angle)
+        u, v = self.com
+        return MassProperties(self.mass, (x + c * u - s * v, y + s * u + c * v), self.inertia)
+
+    def times(self, count: float) -> MassProperties:
+        """Return ``count`` of these side by side, across the plane; 0.5 gives one side of two."""
+        return MassProperties(count * self.mass, self.com, count * self.inertia)
+
+
+def combined(parts: Iterable[MassProperties]) -> MassProperties:
+    """Return one rigid body of several."""
+    pieces = list(parts)
+    mass = sum(piece.mass for piece in pieces)
+    x = sum(piece.mass * piece.com[0] for piece in pieces) / mass
+    y = sum(piece.mass * piece.com[1] for piece in pieces) / mass
+    inertia = sum(piece.inertia + piece.mass * math.dist(piece.com, (x, y)) ** 2 for piece in pieces)
+    return MassProperties(mass, (x, y), inertia)

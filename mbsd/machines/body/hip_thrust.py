@@ -22,9 +22,8 @@ from dataclasses import dataclass
 
 from mbsd.base.arguments import finite_number, number_pair
 from mbsd.base.errors import ModelError
-from mbsd.machines.body.chain import add_barbell, add_lifter, ends_given, not_below
+from mbsd.machines.body.chain import Tempo, add_barbell, add_lifter, ends_given, not_below, repetition
 from mbsd.machines.body.figure import Figure
-from mbsd.machines.body.repetition import Tempo, repetition
 from mbsd.mechanism import Mechanism
 from mbsd.model.laws.formulas import polynomial
 
@@ -56,7 +55,7 @@ class Bench:
     """In the trunk's frame: along it from the hip, and behind it."""
 
     def posture(self, figure: Figure, flexion: float) -> Posture:
-        """The bodies at a flexion of the hip (rad), the knee up. Raises ModelError where they do not reach."""
+        """Return the bodies at a flexion of the hip (rad), the knee up. Raises ModelError where they do not reach."""
         shank, ankle = figure.length("shank"), 1j * figure.length("ankle")
         knee = self.to_knee(figure, flexion)
         way = ankle - self.edge
@@ -72,7 +71,7 @@ class Bench:
         return Posture(cmath.phase(way - knee * cmath.exp(1j * thigh)), thigh, thigh + math.pi - flexion)
 
     def to_knee(self, figure: Figure, flexion: float) -> complex:
-        """From the edge to the knee, in the frame of the thigh."""
+        """Return the way from the edge to the knee, in the frame of the thigh."""
         return figure.length("thigh") + self.contact * cmath.exp(-1j * flexion)
 
 
@@ -90,7 +89,7 @@ def hip_thrust(
     tempo: Tempo | None = None,
     name: str = "hip_thrust",
 ) -> Mechanism:
-    """A figure that thrusts a barbell of ``load`` (kg) up; :func:`mbsd.machines.body.lift.lifted` solves it.
+    """Return a figure that thrusts a barbell of ``load`` (kg) up; :func:`mbsd.machines.body.lift.lifted` solves it.
 
     ``flexion``: of the hip at the bottom and at the top (DEGREES). ``bench``: height of the pad's edge (m);
     ``distance``: from it to the ankle along the floor (m), by default such that the shank is upright at the top.
@@ -138,7 +137,7 @@ def placed_on_bench(
     top: float,
     name: str = "hip_thrust",
 ) -> Bench:
-    """The edge of the pad, and the place of the back on it; see :func:`hip_thrust`. Raises ModelError."""
+    """Return the edge of the pad, and the place of the back on it; see :func:`hip_thrust`. Raises ModelError."""
     height = not_below(name, "bench", bench, 0.0, "m")
     along, behind = (
         (CONTACT * figure.length("trunk"), CHEST * figure.height)

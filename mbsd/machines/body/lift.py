@@ -33,7 +33,7 @@ class Lift:
         return self.solution.t
 
     def moment(self, joint: str) -> np.ndarray:
-        """(T,) net moment (N m) at ``hip``, ``knee``, ``ankle`` or ``shoulder``, positive where it extends the joint.
+        """Return (T,) net moment (N m) at ``hip``, ``knee``, ``ankle`` or ``shoulder``, positive if it extends it.
 
         Raises ModelError for another joint, and for one that this lift does not move by itself.
         """
@@ -42,7 +42,7 @@ class Lift:
         return effort
 
     def power(self, joint: str) -> np.ndarray:
-        """(T,) what the muscles of a joint give (W); negative where they brake."""
+        """Return (T,) what the muscles of a joint give (W); negative where they brake."""
         return self.solution.force(self._named(joint)).power
 
     def work(self, joint: str) -> tuple[float, float]:
@@ -52,7 +52,7 @@ class Lift:
         return float(np.trapezoid(given, self.t)), float(np.trapezoid(taken, self.t))
 
     def flexion(self, joint: str) -> np.ndarray:
-        """(T,) of ``hip`` or ``knee``, or dorsiflexion of the ``ankle`` (rad), 0 in standing. Raises ModelError."""
+        """Return (T,) flexion of ``hip``, ``knee`` or ``ankle`` (dorsiflexion; rad), 0 in standing."""
         angle = {name: self.solution.body(name).theta for name in ("foot", "shank", "thigh", "trunk")}
         flexions = {
             "hip": np.pi - angle["trunk"] + angle["thigh"],
@@ -107,7 +107,7 @@ def lifted(m: Mechanism, steps: int = 360) -> Lift:
 
 
 def with_moments(m: Mechanism, motion: Solution) -> Solution:
-    """The motion of a lift with the moments that make it, in place of its guides.
+    """Return the motion of a lift with the moments that make it, in place of its guides.
 
     Raises ModelError where floor or pad would have to pull, and what ``inverse_dynamics`` raises.
     """
@@ -146,6 +146,6 @@ def peaks(m: Mechanism, figure: Figure, steps: int = 180) -> dict[str, float]:
 
 
 def _at_top(lift: Lift) -> int:
-    """The row at which the bar is highest, in the middle of its pause there."""
+    """Return the row at which the bar is highest, in the middle of its pause there."""
     highest = np.flatnonzero(lift.bar[:, 1] >= lift.bar[:, 1].max() - 1e-12)
     return int(highest[len(highest) // 2])

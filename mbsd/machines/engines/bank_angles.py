@@ -23,8 +23,7 @@ from mbsd.base.errors import ModelError
 from mbsd.machines.engines.engine import engine
 from mbsd.machines.engines.firing import firing
 from mbsd.machines.engines.free_forces import FreeForces, free_forces
-from mbsd.machines.engines.layout import Layout
-from mbsd.machines.engines.layouts import INLINE_THROWS, even_split, vee
+from mbsd.machines.engines.layout import INLINE_THROWS, Layout, even_split, vee
 from mbsd.model.cylinders.cycle import GasCycle
 
 ORDERS = (1, 2, 4, 6)
@@ -79,7 +78,7 @@ class Left:
     couple: np.ndarray
 
     def rank(self, row: int) -> np.ndarray:
-        """(A,) both of one order together."""
+        """Return (A,) both of one order together."""
         return np.hypot(self.force[:, row], self.couple[:, row])
 
 
@@ -139,7 +138,7 @@ class BankAngles:
         return self.angle[(self.uneven < math.degrees(EVEN)) & (self.angle >= NARROWEST)]
 
     def reasons(self) -> list[str]:
-        """Why the best angle is the best, in sentences."""
+        """Return the reasons for the best angle, in sentences."""
         k = int(np.argmin(np.abs(self.angle - self.best)))
         free, out = self.free[k], []
         own = self.left(counterweights=True)
@@ -173,16 +172,16 @@ class BankAngles:
 def bank_angles(
     family: Family, ratio: float = 0.28, cycle: GasCycle | None = None, angles: Sequence[float] = tuple(range(181))
 ) -> BankAngles:
-    """A family over ``angles`` between its banks (degrees); ``ratio``: crank radius over rod.
+    """Return a family over ``angles`` between its banks (degrees); ``ratio``: crank radius over rod.
 
     With a ``cycle`` also the ripple of the torque of its gas. Raises ModelError.
     """
     wide = np.asarray(angles, float)
     fired, free = [], []
     for angle in wide:
-        of = family.layout(float(angle))
-        fired.append(firing(of))
-        free.append(free_forces(of, ratio, ORDERS))
+        plan = family.layout(float(angle))
+        fired.append(firing(plan))
+        free.append(free_forces(plan, ratio, ORDERS))
     mean = 720.0 / family.cylinders
     uneven = np.array([np.abs(np.degrees(sequence.intervals) - mean).max() for sequence in fired])
     ripple = None
@@ -193,7 +192,7 @@ def bank_angles(
 
 
 def gas_torque(cycle: GasCycle, ratio: float, steps: int = 1440) -> np.ndarray:
-    """(steps,) torque of one cylinder's gas on the shaft over its cycle, from where it fires, by the solver (N m).
+    """Return (steps,) torque of one cylinder's gas on the shaft over its cycle, from where it fires (N m).
 
     For a cylinder of 80 mm bore and stroke; the torque of others has the same shape.
     """
@@ -204,7 +203,7 @@ def gas_torque(cycle: GasCycle, ratio: float, steps: int = 1440) -> np.ndarray:
 
 
 def _ripple(torque: np.ndarray, fired: np.ndarray, cycle: float) -> float:
-    """(Largest - least) / mean of the sum of shifted copies."""
+    """Return (Largest - least) / mean of the sum of shifted copies."""
     harmonics = np.fft.rfft(torque)
     n = np.arange(len(harmonics))
     shifted = harmonics * np.exp(-2j * math.pi * np.outer(fired / cycle, n)).sum(axis=0)
@@ -215,7 +214,7 @@ def _ripple(torque: np.ndarray, fired: np.ndarray, cycle: float) -> float:
 def all_families(
     ratio: float = 0.28, cycle: GasCycle | None = None, tell: Callable[[str], None] = lambda line: None
 ) -> list[BankAngles]:
-    """The whole map, a degree apart."""
+    """Return the whole map, a degree apart."""
     out = []
     for family in FAMILIES:
         tell(family.name)

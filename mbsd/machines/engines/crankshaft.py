@@ -10,10 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mbsd.base.arguments import not_negative_number
+from mbsd.base.arguments import finite_number, not_negative_number, positive_number
 from mbsd.base.errors import ModelError
-from mbsd.machines.engines.layout import Layout
-from mbsd.machines.engines.throws import throws
+from mbsd.machines.engines.layout import Layout, cylinders_by_throw
 from mbsd.mechanism import Mechanism
 from mbsd.model.body import Body
 
@@ -32,9 +31,34 @@ class ShaftMasses(NamedTuple):
     """Mass of the ring of a master rod, which other rods have not."""
 
 
+def crank_sizes(name: str, bore: float, stroke: float, rod: float) -> tuple[float, float, float]:
+    """Return bore, throw and rod (m) of an engine whose shaft can turn. Raises ModelError."""
+    given = {"bore": bore, "stroke": stroke, "rod": rod}
+    bore, stroke, rod = (positive_number(f"engine '{name}': {key}", value, "m") for key, value in given.items())
+    throw = 0.5 * stroke
+    if rod <= throw:
+        raise ModelError(
+            f"engine '{name}': the rod of {1000 * rod:g} mm is no longer than the throw of {1000 * throw:g} mm (half "
+            f"the stroke), so the shaft cannot turn; rods have 1.5 to 2 strokes, here {1500 * stroke:g} mm or more"
+        )
+    return bore, throw, rod
+
+
+def shaft_masses(
+    name: str, piston_mass: float | None, rod_mass: float | None, rod_com: float, throw_mass: float
+) -> ShaftMasses:
+    """Return the masses on each throw, without the ring of a master rod. Raises ModelError."""
+    if (piston_mass is None) != (rod_mass is None):
+        raise ModelError(f"engine '{name}': give both piston_mass and rod_mass, or neither")
+    end = finite_number(f"engine '{name}': rod_com", rod_com)
+    if not 0.0 <= end <= 1.0:
+        raise ModelError(f"engine '{name}': rod_com is {end:g}; it must be from 0, at the crank pin, to 1")
+    return ShaftMasses(piston_mass, rod_mass, end, throw_mass, 0.0)
+
+
 def crankshaft(
     m: Mechanism,
-    of: Layout,
+    plan: Layout,
     z: np.ndarray,
     throw: float,
     share: float | None,
@@ -42,7 +66,7 @@ def crankshaft(
     flywheel: float,
     body: str = "crank",
 ) -> Body:
-    """The shaft ``body``; ``share`` None: without counterweights. Raises ModelError for masses that are negative."""
+    """Add the shaft ``body``; ``share`` None: no counterweights. Raises ModelError for negative masses."""
     piston, rod, end, throw_mass, ring = masses
     spin = not_negative_number(f"engine '{m.name}': flywheel", flywheel)
     heavy = not_negative_number(f"engine '{m.name}': throw_mass", throw_mass)
@@ -51,7 +75,7 @@ def crankshaft(
     piston = not_negative_number(f"engine '{m.name}': piston_mass", piston, "kg")
     rod = not_negative_number(f"engine '{m.name}': rod_mass", rod, "kg")
     points: list[tuple[float, float, float, float]] = []
-    for direction, place, count in _throws(of, z):
+    for direction, place, count in _throws(plan, z):
         outward = np.array([math.cos(UPRIGHT + direction), math.sin(UPRIGHT + direction)]) * throw
         opposite = 0.0
         if share is not None:
@@ -61,7 +85,7 @@ def crankshaft(
 
 
 def _of_points(m: Mechanism, name: str, points: np.ndarray, spin: float) -> Body:
-    """The body of point masses (n, 4) of m, x, y, z, and an inertia that turns about the origin beside them."""
+    """Return the body of point masses (n, 4) of m, x, y, z, and an inertia that turns about the origin beside them."""
     mass, at, z = points[:, 0], points[:, 1:3], points[:, 3]
     total = float(mass.sum())
     if total == 0.0:
@@ -72,13 +96,13 @@ def _of_points(m: Mechanism, name: str, points: np.ndarray, spin: float) -> Body
     return m.body(name, total, com.tolist(), inertia, z=middle, products=products.tolist())
 
 
-def _throws(of: Layout, z: np.ndarray) -> list[tuple[float, float, int]]:
-    """Direction (rad), place (m) and number of rods of each throw."""
-    return [(of.cylinders[ks[0]].throw, float(z[ks].mean()), len(ks)) for ks in throws(of)]
+def _throws(plan: Layout, z: np.ndarray) -> list[tuple[float, float, int]]:
+    """Return direction (rad), place (m) and number of rods of each throw."""
+    return [(plan.cylinders[ks[0]].throw, float(z[ks].mean()), len(ks)) for ks in cylinders_by_throw(plan)]
 
 
 def share_of(name: str, counterweight: str | float) -> float | None:
-    """Part of the oscillating masses that counterweights balance; None: there are none."""
+    """Return the part of the oscillating masses that counterweights balance; None if there are none."""
     words = {"auto": 0.5, "rotating": 0.0, "none": None}
     if isinstance(counterweight, str):
         if counterweight not in words:

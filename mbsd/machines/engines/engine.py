@@ -32,12 +32,10 @@ import numpy as np
 from mbsd.base.arguments import finite_number, not_negative_number, positive_number
 from mbsd.base.errors import ModelError
 from mbsd.machines.engines.block import Block
-from mbsd.machines.engines.crankshaft import ShaftMasses, crankshaft, share_of
+from mbsd.machines.engines.crankshaft import ShaftMasses, crank_sizes, crankshaft, shaft_masses, share_of
 from mbsd.machines.engines.firing import firing
-from mbsd.machines.engines.layout import Layout
+from mbsd.machines.engines.layout import SAME, Layout, named
 from mbsd.machines.engines.master_rod import NO_RING, Knuckle, MasterRod, Ring, knuckles, ring_of
-from mbsd.machines.engines.named import named
-from mbsd.machines.engines.throws import SAME
 from mbsd.machines.engines.valve_train import ValveTrain, valve_train
 from mbsd.mechanism import Mechanism
 from mbsd.model.body import Body
@@ -77,7 +75,7 @@ def engine(
     block: Block | None = None,
     name: str | None = None,
 ) -> Mechanism:
-    """An engine of a layout by name ("V8", "I4", "flat-6", "radial-5", ...) or of a :class:`Layout`.
+    """Return an engine of a layout by name ("V8", "I4", "flat-6", "radial-5", ...) or of a :class:`Layout`.
 
     ``bore``, ``stroke``, ``rod`` (m, between pin and wrist pin); ``spacing`` of neighbouring throws along the shaft (m,
     1.2 bores by default); ``angle``, ``throws``, ``split`` (degrees): those of :func:`named`; ``bank_offset``: how far
@@ -104,80 +102,83 @@ def engine(
     Raises ModelError for what cannot be: a rod no longer than the throw, cylinders that overlap, throws that do not fit
     the layout, masses that are negative, an order that the throws do not allow.
     """
-    of = layout if isinstance(layout, Layout) else named(layout, angle, throws, split)
+    plan = layout if isinstance(layout, Layout) else named(layout, angle, throws, split)
     if isinstance(layout, Layout) and any(value is not None for value in (angle, throws, split)):
-        raise ModelError(f"engine '{of.name}': angle, throws and split are those of its layout; leave them out")
-    name = of.name if name is None else name
-    given = {"bore": bore, "stroke": stroke, "rod": rod}
-    size = {key: positive_number(f"engine '{name}': {key}", value, "m") for key, value in given.items()}
-    throw = 0.5 * size["stroke"]
-    if size["rod"] <= throw:
-        raise ModelError(
-            f"engine '{name}': the rod of {1000 * rod:g} mm is no longer than the throw of {1000 * throw:g} mm (half "
-            f"the stroke), so the shaft cannot turn; rods have 1.5 to 2 strokes, here {1500 * stroke:g} mm or more"
-        )
-    apart = SPACE * size["bore"] if spacing is None else spacing
-    spacing = positive_number(f"engine '{name}': spacing", apart, "m")
-    master_rod, hung = knuckles(of, name, rods, throw, size["rod"], size["bore"])
-    if hung and bank_offset:
-        raise ModelError(
-            f"engine '{name}': bank_offset is {1000 * bank_offset:g} mm, but rods on a master rod are in one plane; "
-            "leave it out, or take rods='pin'"
-        )
-    z = _places(of, name, spacing, 0.0 if hung else bank_offset)
-    _refuse_overlaps(of, name, z, size["bore"])
-    if (piston_mass is None) != (rod_mass is None):
-        raise ModelError(f"engine '{name}': give both piston_mass and rod_mass, or neither")
-    end = finite_number(f"engine '{name}': rod_com", rod_com)
-    if not 0.0 <= end <= 1.0:
-        raise ModelError(f"engine '{name}': rod_com is {end:g}; it must be from 0, at the crank pin, to 1")
+        raise ModelError(f"engine '{plan.name}': angle, throws and split are those of its layout; leave them out")
+    name = plan.name if name is None else name
+    bore, throw, rod = crank_sizes(name, bore, stroke, rod)
+    spacing = positive_number(f"engine '{name}': spacing", SPACE * bore if spacing is None else spacing, "m")
+    master_rod, hung = knuckles(plan, name, rods, throw, rod, bore)
+    z = _places(plan, name, spacing, bank_offset, bool(hung))
+    _check_overlaps(plan, name, z, bore)
+    masses = shaft_masses(name, piston_mass, rod_mass, rod_com, throw_mass)
     m = Mechanism(name)
     frame = m.ground if block is None else _on_mounts(m, block)
     ring = NO_RING if master_rod is None else ring_of(name, master_rod, hung, rod_mass)
-    masses = ShaftMasses(piston_mass, rod_mass, end, throw_mass, ring.mass)
-    crank = crankshaft(m, of, z, throw, share_of(name, counterweight), masses, flywheel)
+    crank = crankshaft(m, plan, z, throw, share_of(name, counterweight), masses._replace(ring=ring.mass), flywheel)
     m.revolute("main", frame.origin, crank.origin)
-    masters = {knuckle.master for knuckle in hung.values()}
-    leans = [UPRIGHT + c.bank - math.asin(throw / rod * math.sin(c.throw - c.bank)) for c in of.cylinders]
-    poses: dict[str, float] = {}
-    for k in sorted(range(len(z)), key=lambda k: k in hung):
-        cylinder, place, number = of.cylinders[k], z[k], k + 1
-        pin, axis = UPRIGHT + cylinder.throw, UPRIGHT + cylinder.bank
-        at = throw * math.cos(pin), throw * math.sin(pin)
-        if k in hung:
-            knuckle = hung[k]
-            con = _rod(m, f"rod_{number}", knuckle.motion.rod, rod_mass, end, place)
-            x, y = knuckle.radius * math.cos(knuckle.angle), knuckle.radius * math.sin(knuckle.angle)
-            m.revolute(f"knuckle_{number}", m.bodies[f"rod_{knuckle.master + 1}"].at(x, y), con.start)
-            poses[f"rod_{number}"] = math.degrees(knuckle.rod_starts(leans[knuckle.master], complex(*at), axis))
-        else:
-            con = _rod(m, f"rod_{number}", rod, rod_mass, end, place, ring if k in masters else NO_RING)
-            m.revolute(f"pin_{number}", crank.at(*at, z=place), con.start)
-            poses[f"rod_{number}"] = math.degrees(leans[k])
-        piston = m.body(f"piston_{number}", mass=piston_mass, z=place)
-        m.revolute(f"wrist_{number}", con.end, piston.origin)
-        m.prismatic(f"bore_{number}", frame.at(0.0, 0.0, axis, z=place), piston.origin)
-    m.start_near(**poses)
+    _add_cylinders(m, frame, plan, hung, ring, masses, z, throw, rod)
     if gas is None and valves is None and order is not None:
         raise ModelError(f"engine '{name}': a firing order without gas; give gas=four_stroke(...)")
     if gas is not None or valves is not None:
-        fires = _fires(m.name, of, hung, gas, order)
+        fires = _fires(name, plan, hung, gas, order)
         if gas is not None:
-            _burn(m, frame, of, hung, gas, fires, bore=size["bore"], top=throw + rod, stroke=2 * throw)
+            _burn(m, frame, plan, hung, gas, fires, bore=bore, top=throw + rod, stroke=2 * throw)
         if valves is not None:
-            _refuse_valves(name, valves, bool(hung))
-            valve_train(m, frame, of, valves, fires, size["bore"], throw + rod, z, gas, piston_mass is not None)
-    law = _law(name, speed, acceleration)
-    if law is not None:
-        if block is None or block.motor_on == "ground":
-            m.drive_angle("motor", crank, law)
-        else:
-            m.drive_relative_angle("motor", frame, crank, law)
+            _check_valves(name, valves, bool(hung))
+            valve_train(m, frame, plan, valves, fires, bore, throw + rod, z, gas, piston_mass is not None)
+    _drive(m, frame, _law(name, speed, acceleration), block)
     return m
 
 
+def _add_cylinders(
+    m: Mechanism,
+    frame: Body,
+    plan: Layout,
+    hung: Mapping[int, Knuckle],
+    ring: Ring,
+    masses: ShaftMasses,
+    z: np.ndarray,
+    throw: float,
+    rod: float,
+) -> None:
+    """Add rods and pistons, master rods first, and say where the rods start."""
+    crank, masters = m.bodies["crank"], {knuckle.master for knuckle in hung.values()}
+    leans = [UPRIGHT + c.bank - math.asin(throw / rod * math.sin(c.throw - c.bank)) for c in plan.cylinders]
+    poses: dict[str, float] = {}
+    for k in sorted(range(len(z)), key=lambda k: k in hung):
+        cylinder, place, number = plan.cylinders[k], z[k], k + 1
+        pin, axis = UPRIGHT + cylinder.throw, UPRIGHT + cylinder.bank
+        x, y = throw * math.cos(pin), throw * math.sin(pin)
+        if k in hung:
+            knuckle = hung[k]
+            con = _rod(m, f"rod_{number}", knuckle.motion.rod, masses.rod, masses.end, place)
+            eye = knuckle.radius * math.cos(knuckle.angle), knuckle.radius * math.sin(knuckle.angle)
+            m.revolute(f"knuckle_{number}", m.bodies[f"rod_{knuckle.master + 1}"].at(*eye), con.start)
+            poses[f"rod_{number}"] = math.degrees(knuckle.rod_starts(leans[knuckle.master], complex(x, y), axis))
+        else:
+            con = _rod(m, f"rod_{number}", rod, masses.rod, masses.end, place, ring if k in masters else NO_RING)
+            m.revolute(f"pin_{number}", crank.at(x, y, z=place), con.start)
+            poses[f"rod_{number}"] = math.degrees(leans[k])
+        piston = m.body(f"piston_{number}", mass=masses.piston, z=place)
+        m.revolute(f"wrist_{number}", con.end, piston.origin)
+        m.prismatic(f"bore_{number}", frame.at(0.0, 0.0, axis, z=place), piston.origin)
+    m.start_near(**poses)
+
+
+def _drive(m: Mechanism, frame: Body, law: Motion | None, block: Block | None) -> None:
+    """Drive the shaft against ground or against the block it turns in; not at all without a law."""
+    if law is None:
+        return
+    crank = m.bodies["crank"]
+    if block is None or block.motor_on == "ground":
+        m.drive_angle("motor", crank, law)
+    else:
+        m.drive_relative_angle("motor", frame, crank, law)
+
+
 def _law(name: str, speed: float | None, acceleration: float | None) -> Motion | None:
-    """The angle of the shaft: at a constant speed or, with an acceleration, through a run-up."""
+    """Return the angle of the shaft: at a constant speed or, with an acceleration, through a run-up."""
     rate = None if speed is None else finite_number(f"engine '{name}': speed", speed)
     if acceleration is None:
         return None if rate is None else constant_rate(rate)
@@ -187,7 +188,7 @@ def _law(name: str, speed: float | None, acceleration: float | None) -> Motion |
 def _rod(
     m: Mechanism, name: str, length: float, mass: float | None, end: float, z: float, ring: Ring = NO_RING
 ) -> Body:
-    """A connecting rod, with a ring about its pin."""
+    """Return a connecting rod, with a ring about its pin."""
     if mass is None or not ring.mass:
         inertia = None if mass is None else mass * end * (1 - end) * length**2
         return m.bar(name, length, mass=mass, com=(end * length, 0.0), inertia=inertia, z=z)
@@ -197,7 +198,7 @@ def _rod(
 
 
 def _on_mounts(m: Mechanism, block: Block) -> Body:
-    """The block as a body, its frame on the shaft's axis."""
+    """Return the block as a body, its frame on the shaft's axis."""
     body = m.body("block", block.mass, block.com, block.inertia)
     for k, mount in enumerate(block.mounts, start=1):
         place = m.ground.at(*mount.at), body.at(*mount.at)
@@ -207,15 +208,16 @@ def _on_mounts(m: Mechanism, block: Block) -> Body:
 
 
 def _fires(
-    name: str, of: Layout, hung: Mapping[int, Knuckle], gas: GasCycle | None, order: Sequence[int] | None
+    name: str, plan: Layout, hung: Mapping[int, Knuckle], gas: GasCycle | None, order: Sequence[int] | None
 ) -> dict[int, float]:
-    """Angle of the crank (rad) at which each cylinder, by its number, fires; the first of the order at its first top
-    dead centre.
+    """Return the crank angle (rad) at which each cylinder, by its number, fires.
+
+    The first of the order fires at its first top dead centre.
     """
     if gas is not None and not isinstance(gas, GasCycle):
         raise ModelError(f"engine '{name}': gas must be four_stroke(...), two_stroke(...) or pressure_table(...)")
-    fired = firing(of, order, 4 if gas is None else 2 * gas.turns)
-    first = of.cylinders[fired.order[0] - 1]
+    fired = firing(plan, order, 4 if gas is None else 2 * gas.turns)
+    first = plan.cylinders[fired.order[0] - 1]
     begin = (first.bank - first.throw) % (2 * math.pi)
     late = {number: knuckle.late for number, knuckle in ((k + 1, hung_knuckle) for k, hung_knuckle in hung.items())}
     return {
@@ -224,7 +226,7 @@ def _fires(
     }
 
 
-def _refuse_valves(name: str, valves: object, has_knuckles: bool) -> None:
+def _check_valves(name: str, valves: object, has_knuckles: bool) -> None:
     if not isinstance(valves, ValveTrain):
         raise ModelError(f"engine '{name}': valves must be ValveTrain(...)")
     if has_knuckles:
@@ -237,7 +239,7 @@ def _refuse_valves(name: str, valves: object, has_knuckles: bool) -> None:
 def _burn(
     m: Mechanism,
     frame: Body,
-    of: Layout,
+    plan: Layout,
     hung: Mapping[int, Knuckle],
     gas: GasCycle,
     fires: Mapping[int, float],
@@ -245,9 +247,9 @@ def _burn(
     top: float,
     stroke: float,
 ) -> None:
-    """Gas in every cylinder."""
+    """Add gas to every cylinder."""
     for number, at in fires.items():
-        axis = UPRIGHT + of.cylinders[number - 1].bank
+        axis = UPRIGHT + plan.cylinders[number - 1].bank
         piston = m.bodies[f"piston_{number}"]
         knuckle = hung.get(number - 1)
         reach, way = (top, stroke) if knuckle is None else (knuckle.motion.reach, knuckle.motion.stroke)
@@ -256,19 +258,28 @@ def _burn(
         gas_cycle(m, f"gas_{number}", head, piston.origin, m.bodies["crank"], gas, bore=bore, fires_at=at)
 
 
-def _places(of: Layout, name: str, spacing: float, bank_offset: float | None) -> np.ndarray:
-    """(N,) places of the cylinders along the shaft (m): rods that share a throw stand side by side."""
-    apart = spacing / 6 if bank_offset is None else not_negative_number(f"engine '{name}': bank_offset", bank_offset)
+def _places(plan: Layout, name: str, spacing: float, bank_offset: float | None, one_plane: bool) -> np.ndarray:
+    """Return (N,) places of the cylinders along the shaft (m): rods that share a throw stand side by side.
+
+    Rods on a master rod are in ``one_plane``. Raises ModelError.
+    """
+    if one_plane and bank_offset:
+        raise ModelError(
+            f"engine '{name}': bank_offset is {1000 * bank_offset:g} mm, but rods on a master rod are in one plane; "
+            "leave it out, or take rods='pin'"
+        )
+    given = 0.0 if one_plane else bank_offset
+    apart = spacing / 6 if given is None else not_negative_number(f"engine '{name}': bank_offset", given)
     groups: dict[int, list[int]] = {}
-    for k, cylinder in enumerate(of.cylinders):
+    for k, cylinder in enumerate(plan.cylinders):
         groups.setdefault(round(cylinder.z / SAME), []).append(k)
-    z = of.z * spacing
+    z = plan.z * spacing
     for ks in groups.values():
         z[ks] += apart * (np.arange(len(ks)) - 0.5 * (len(ks) - 1))
     for before, after in pairwise(sorted(groups)):
         first, second = groups[before][-1], groups[after][0]
-        if len(of.cylinders) > len(groups) and z[second] - z[first] < SAME * spacing:
-            room = 1000 * float(of.z[second] - of.z[first]) * spacing
+        if len(plan.cylinders) > len(groups) and z[second] - z[first] < SAME * spacing:
+            room = 1000 * float(plan.z[second] - plan.z[first]) * spacing
             most = room / max(0.5 * (len(groups[before]) + len(groups[after])) - 1.0, 0.5)
             raise ModelError(
                 f"engine '{name}': with a bank_offset of {1000 * apart:.4g} mm rod {first + 1} does not stand before "
@@ -277,11 +288,11 @@ def _places(of: Layout, name: str, spacing: float, bank_offset: float | None) ->
     return z
 
 
-def _refuse_overlaps(of: Layout, name: str, z: np.ndarray, bore: float) -> None:
-    """Cylinders of one bank must stand at least a bore apart."""
-    for first, cylinder in enumerate(of.cylinders):
-        for second in range(first + 1, len(of.cylinders)):
-            side = math.remainder(cylinder.bank - of.cylinders[second].bank, 2 * math.pi)
+def _check_overlaps(plan: Layout, name: str, z: np.ndarray, bore: float) -> None:
+    """Raise ModelError for cylinders of one bank that stand less than a bore apart."""
+    for first, cylinder in enumerate(plan.cylinders):
+        for second in range(first + 1, len(plan.cylinders)):
+            side = math.remainder(cylinder.bank - plan.cylinders[second].bank, 2 * math.pi)
             gap = abs(float(z[first] - z[second]))
             if abs(side) < SAME and gap < bore:
                 raise ModelError(

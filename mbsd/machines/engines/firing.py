@@ -45,23 +45,23 @@ class Firing:
         return bool(np.ptp(self.intervals) < 1e-6)
 
 
-def firing(of: Layout, order: Sequence[int] | None = None, strokes: int = 4) -> Firing:
-    """The firing of an engine in a given order, or in the order that fires most evenly.
+def firing(plan: Layout, order: Sequence[int] | None = None, strokes: int = 4) -> Firing:
+    """Return the firing of an engine in a given order, or in the order that fires most evenly.
 
     Raises ModelError for an order that is no permutation of the cylinders' numbers, or that the throws do not allow,
     and for strokes other than 2 and 4.
     """
     if strokes not in (2, 4):
-        raise ModelError(f"engine '{of.name}': {strokes} strokes; an engine has 2 or 4")
+        raise ModelError(f"engine '{plan.name}': {strokes} strokes; an engine has 2 or 4")
     cycle = TURN * strokes / 2
-    tops = (of.banks - of.throws) % TURN
+    tops = (plan.banks - plan.throws) % TURN
     tops[TURN - tops < SAME] = 0.0
     if order is None:
-        return _most_even(tops, cycle, of.z, of.name)
+        return _most_even(tops, cycle, plan.z, plan.name)
     numbers = tuple(order)
     if sorted(numbers) != list(range(1, len(tops) + 1)):
         raise ModelError(
-            f"engine '{of.name}': the firing order {'-'.join(map(str, numbers))} is no permutation of the cylinders "
+            f"engine '{plan.name}': the firing order {'-'.join(map(str, numbers))} is no permutation of the cylinders "
             f"1 .. {len(tops)}; name each of them once"
         )
     angles = [float(tops[numbers[0] - 1])]
@@ -71,15 +71,15 @@ def firing(of: Layout, order: Sequence[int] | None = None, strokes: int = 4) -> 
     span = angles[-1] - angles[0]
     if span > cycle - SAME:
         raise ModelError(
-            f"engine '{of.name}': the firing order {'-'.join(map(str, numbers))} takes {math.degrees(span):.4g} "
+            f"engine '{plan.name}': the firing order {'-'.join(map(str, numbers))} takes {math.degrees(span):.4g} "
             f"degrees of the shaft, but a cycle has {math.degrees(cycle):g}; these throws fire, as evenly as they can, "
-            f"{'-'.join(map(str, _most_even(tops, cycle, of.z).order))}"
+            f"{'-'.join(map(str, _most_even(tops, cycle, plan.z).order))}"
         )
     return Firing(numbers, np.array(angles) - angles[0], cycle)
 
 
 def _most_even(tops: np.ndarray, cycle: float, z: np.ndarray, name: str = "") -> Firing:
-    """Choice of turns whose intervals differ least from equal ones; among equal ones the smoothest.
+    """Return the firing whose intervals differ least from equal ones; among equal ones the smoothest.
 
     Smoothest: S_n = |sum_k e^(2 pi i n a_k / cycle)|, the n-th harmonic of equal pulses at the angles a_k, is smallest
     for n = 1, then 2 and so on, since low orders shake most. Of those that are as smooth, the one in which cylinders

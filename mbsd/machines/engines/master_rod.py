@@ -24,8 +24,8 @@ import numpy as np
 
 from mbsd.base.arguments import finite_number, not_negative_number, positive_number
 from mbsd.base.errors import ModelError
-from mbsd.machines.engines.layout import Layout
-from mbsd.machines.engines.throws import SAME, throws
+from mbsd.base.quantity import counted
+from mbsd.machines.engines.layout import SAME, Layout, cylinders_by_throw
 from mbsd.model.cylinders.piston_motion import ArticulatedMotion
 
 UPRIGHT = 0.5 * math.pi
@@ -75,18 +75,18 @@ class Knuckle:
     """How far the shaft turns from the top dead centre of the layout to that of the piston (rad)."""
 
     def rod_starts(self, master: float, pin: complex, axis: float) -> float:
-        """Direction of the rod (rad): that of the master rod, the crank pin (m) and the cylinder's axis are given."""
+        """Return the rod's direction (rad) from that of the master rod, the crank pin (m) and the cylinder's axis."""
         side = ((pin + self.radius * cmath.exp(1j * (master + self.angle))) * cmath.exp(-1j * axis)).imag
         return axis - math.asin(side / self.motion.rod)
 
 
 def knuckles(
-    of: Layout, name: str, rods: str | MasterRod | None, throw: float, rod: float, bore: float
+    plan: Layout, name: str, rods: str | MasterRod | None, throw: float, rod: float, bore: float
 ) -> tuple[MasterRod | None, dict[int, Knuckle]]:
-    """The knuckle pins by index of their cylinder; ``rods`` None: of radial engines alone. Raises ModelError."""
+    """Return the knuckle pins by index of their cylinder; ``rods`` None: of radial engines alone. Raises ModelError."""
     if isinstance(rods, str) and rods not in WAYS:
         raise ModelError(f"engine '{name}': rods '{rods}'; they are 'master', 'pin' or MasterRod(...)")
-    if rods == "pin" or (rods is None and not is_radial(of)):
+    if rods == "pin" or (rods is None and not is_radial(plan)):
         return None, {}
     own = rods if isinstance(rods, MasterRod) else MasterRod()
     radius = AROUND * bore if own.radius is None else own.radius
@@ -97,33 +97,33 @@ def knuckles(
             f"{1000 * rod:g} mm on a throw of {1000 * throw:g} mm leave less than {1000 * (rod - throw):g} mm; make "
             "radius smaller or rod longer"
         )
-    groups = [group for group in throws(of) if len(group) > 1]
+    groups = [group for group in cylinders_by_throw(plan) if len(group) > 1]
     if not groups:
         raise ModelError(f"engine '{name}': rods 'master', but no throw has two rods; leave it out")
     knuckle_of: dict[int, Knuckle] = {}
     for group in groups:
-        knuckle_of |= _of_throw(of, name, own, group, throw, rod, radius)
+        knuckle_of |= _of_throw(plan, name, own, group, throw, rod, radius)
     return own, knuckle_of
 
 
 def ring_of(name: str, own: MasterRod, hung: Mapping[int, Knuckle], rod_mass: float | None) -> Ring:
-    """The ring of each master rod. Raises ModelError."""
+    """Return the ring of each master rod. Raises ModelError."""
     mass = not_negative_number(f"engine '{name}': ring_mass of a master rod", own.ring_mass, "kg")
     if mass and rod_mass is None:
         raise ModelError(f"engine '{name}': ring_mass without rod_mass; give both, or neither")
     return Ring(mass, next(iter(hung.values())).radius)
 
 
-def is_radial(of: Layout) -> bool:
+def is_radial(plan: Layout) -> bool:
     """True if the cylinders stand all round one throw: no half turn is without one."""
-    if len(throws(of)) > 1 or len(of.cylinders) < 3:
+    if len(cylinders_by_throw(plan)) > 1 or len(plan.cylinders) < 3:
         return False
-    banks = np.sort(of.banks % (2 * math.pi))
+    banks = np.sort(plan.banks % (2 * math.pi))
     return bool(np.diff(np.append(banks, banks[0] + 2 * math.pi)).max() < math.pi - SAME)
 
 
 def _of_throw(
-    of: Layout, name: str, own: MasterRod, group: list[int], throw: float, rod: float, radius: float
+    plan: Layout, name: str, own: MasterRod, group: list[int], throw: float, rod: float, radius: float
 ) -> dict[int, Knuckle]:
     if not (isinstance(own.cylinder, int) and 1 <= own.cylinder <= len(group)):
         raise ModelError(
@@ -132,14 +132,14 @@ def _of_throw(
         )
     master = group[own.cylinder - 1]
     others = [k for k in group if k != master]
-    banks = {k: of.cylinders[k].bank - of.cylinders[master].bank for k in others}
+    banks = {k: plan.cylinders[k].bank - plan.cylinders[master].bank for k in others}
     if own.angles is None:
         angles = list(banks.values())
     else:
         if len(own.angles) != len(others):
             raise ModelError(
-                f"engine '{name}': {len(own.angles)} angles of knuckle pins; a master rod here carries {len(others)} "
-                "other rods, so give as many"
+                f"engine '{name}': {counted(len(own.angles), 'angle')} for knuckle pins; a master rod here carries "
+                f"{counted(len(others), 'other rod')}, so give as many"
             )
         what = f"engine '{name}': angle of the knuckle pin of cylinder"
         angles = [math.radians(finite_number(f"{what} {k + 1}", a)) for k, a in zip(others, own.angles, strict=True)]

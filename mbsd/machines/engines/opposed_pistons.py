@@ -25,7 +25,7 @@ import numpy as np
 
 from mbsd.base.arguments import finite_number, not_negative_number, positive_number
 from mbsd.base.errors import ModelError
-from mbsd.machines.engines.crankshaft import UPRIGHT, ShaftMasses, crankshaft, share_of
+from mbsd.machines.engines.crankshaft import UPRIGHT, ShaftMasses, crank_sizes, crankshaft, shaft_masses, share_of
 from mbsd.machines.engines.layout import Layout, layout
 from mbsd.mechanism import Mechanism
 from mbsd.model.body import Body
@@ -65,7 +65,7 @@ def opposed_pistons(
     gas: GasCycle | None = None,
     name: str = "opposed_pistons",
 ) -> Mechanism:
-    """An engine of as many cylinders as ``throws`` (DEGREES), each with two pistons of this ``stroke`` (m).
+    """Return an engine of as many cylinders as ``throws`` (DEGREES), each with two pistons of this ``stroke`` (m).
 
     The lower shaft ``crank`` turns counter-clockwise about the origin, the cylinders stand upright on it, and
     ``upper_crank`` is above them; bodies and joints of the upper pistons are called ``upper_rod_1`` and so on. The
@@ -77,15 +77,8 @@ def opposed_pistons(
 
     Returns a mechanism whose distance between the shafts follows from all this. Raises ModelError for what cannot be.
     """
-    size = {"bore": bore, "stroke": stroke, "rod": rod}
-    for key, value in size.items():
-        positive_number(f"engine '{name}': {key}", value, "m")
-    throw, lead = 0.5 * stroke, math.radians(finite_number(f"engine '{name}': phase", phase))
-    if rod <= throw:
-        raise ModelError(
-            f"engine '{name}': the rod of {1000 * rod:g} mm is no longer than the throw of {1000 * throw:g} mm (half "
-            f"the stroke), so the shafts cannot turn; rods have 1.5 to 2 strokes, here {1500 * stroke:g} mm or more"
-        )
+    bore, throw, rod = crank_sizes(name, bore, stroke, rod)
+    lead = math.radians(finite_number(f"engine '{name}': phase", phase))
     if abs(phase) > MOST:
         raise ModelError(
             f"engine '{name}': phase is {phase:g} degrees; the exhaust pistons lead by 5 to 20, {MOST:g} at most"
@@ -96,36 +89,31 @@ def opposed_pistons(
             f"engine '{name}': cylinders are {1000 * apart:.4g} mm apart along the shafts, and the bore is "
             f"{1000 * bore:g} mm; make spacing larger"
         )
-    if (piston_mass is None) != (rod_mass is None):
-        raise ModelError(f"engine '{name}': give both piston_mass and rod_mass, or neither")
-    end = finite_number(f"engine '{name}': rod_com", rod_com)
-    if not 0.0 <= end <= 1.0:
-        raise ModelError(f"engine '{name}': rod_com is {end:g}; it must be from 0, at the crank pin, to 1")
+    masses = shaft_masses(name, piston_mass, rod_mass, rod_com, throw_mass)
     high = CROWN * bore if crown is None else not_negative_number(f"engine '{name}': crown", crown, "m")
     way = 4.0 * throw * math.cos(0.5 * lead)
     nearest = _nearest(name, gas, gap, way, stroke)
     between = 2.0 * (_wrist(throw, rod, 0.5 * lead) + high) + nearest
-    of = layout(name, [0.0] * len(throws), throws)
+    plan = layout(name, [0.0] * len(throws), throws)
     sense = -1.0 if opposite else 1.0
     upper = layout(name, [180.0] * len(throws), [180.0 + sense * (t + phase) for t in throws])
     m = Mechanism(name)
-    masses = ShaftMasses(piston_mass, rod_mass, end, throw_mass, 0.0)
-    z, share = of.z * apart, share_of(name, counterweight)
+    z, share = plan.z * apart, share_of(name, counterweight)
     cranks = [
         crankshaft(m, engine, z, throw, share, masses, 0.0, shaft)
-        for engine, shaft in ((of, "crank"), (upper, "upper_crank"))
+        for engine, shaft in ((plan, "crank"), (upper, "upper_crank"))
     ]
     m.revolute("main", m.ground.origin, cranks[0].origin)
     m.revolute("upper_main", m.ground.at(0.0, between), cranks[1].origin)
     _geared(m, cranks, between, float(z.max()) + apart, opposite)
     for crank, engine, prefix, axis, foot in (
-        (cranks[0], of, "", UPRIGHT, 0.0),
+        (cranks[0], plan, "", UPRIGHT, 0.0),
         (cranks[1], upper, "upper_", -UPRIGHT, between),
     ):
-        _pistons(m, crank, engine, z, (prefix, axis, foot), (throw, rod), (piston_mass, rod_mass, end))
+        _pistons(m, crank, engine, z, (prefix, axis, foot), (throw, rod), masses)
     if gas is not None:
         ratio = 2.0 * rod * math.cos(0.5 * lead) ** 2 / math.cos(lead)
-        for k, cylinder in enumerate(of.cylinders, start=1):
+        for k, cylinder in enumerate(plan.cylinders, start=1):
             head, piston = (m.bodies[f"{prefix}piston_{k}"].at(high, 0.0) for prefix in ("upper_", ""))
             fires = -0.5 * lead - cylinder.throw + UPRIGHT  # against the upper piston, which points down
             gas_cycle(
@@ -138,7 +126,7 @@ def opposed_pistons(
 
 
 def _nearest(name: str, gas: GasCycle | None, gap: float | None, way: float, stroke: float) -> float:
-    """Distance between the crowns where they are nearest (m)."""
+    """Return the distance between the crowns where they are nearest (m)."""
     given = None if gap is None else positive_number(f"engine '{name}': gap", gap, "m")
     if gas is None:
         return GAP * stroke if given is None else given
@@ -167,7 +155,7 @@ def _wrist(throw: float, rod: float, angle: float) -> float:
 
 
 def _geared(m: Mechanism, cranks: Sequence[Body], between: float, z: float, opposite: bool) -> None:
-    """Gears of equal size, behind the last cylinder."""
+    """Add gears of equal size, behind the last cylinder."""
     ends = [crank.at(0.0, 0.0, z=z) for crank in cranks]
     m.start_near(crank=0, upper_crank=0)
     if opposite:
@@ -183,18 +171,18 @@ def _geared(m: Mechanism, cranks: Sequence[Body], between: float, z: float, oppo
 def _pistons(
     m: Mechanism,
     crank: Body,
-    of: Layout,
+    plan: Layout,
     z: np.ndarray,
     where: tuple[str, float, float],
     lengths: tuple[float, float],
-    masses: tuple[float | None, float | None, float],
+    masses: ShaftMasses,
 ) -> None:
-    """Rods and pistons of one shaft: prefix of their names, direction of the cylinders, place of the shaft."""
-    (prefix, axis, foot), (throw, rod), (piston_mass, rod_mass, end) = where, lengths, masses
-    inertia = None if rod_mass is None else rod_mass * end * (1 - end) * rod**2
-    for k, (cylinder, place) in enumerate(zip(of.cylinders, z, strict=True), start=1):
-        con = m.bar(f"{prefix}rod_{k}", rod, mass=rod_mass, com=(end * rod, 0.0), inertia=inertia, z=place)
-        piston = m.body(f"{prefix}piston_{k}", mass=piston_mass, z=place)
+    """Add rods and pistons of one shaft; ``where``: prefix of names, direction of cylinders, place of the shaft."""
+    (prefix, axis, foot), (throw, rod), end = where, lengths, masses.end
+    inertia = None if masses.rod is None else masses.rod * end * (1 - end) * rod**2
+    for k, (cylinder, place) in enumerate(zip(plan.cylinders, z, strict=True), start=1):
+        con = m.bar(f"{prefix}rod_{k}", rod, mass=masses.rod, com=(end * rod, 0.0), inertia=inertia, z=place)
+        piston = m.body(f"{prefix}piston_{k}", mass=masses.piston, z=place)
         pin = UPRIGHT + cylinder.throw
         at = throw * math.cos(pin), throw * math.sin(pin)
         m.revolute(f"{prefix}pin_{k}", crank.at(*at, z=place), con.start)

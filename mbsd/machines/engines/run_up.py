@@ -83,7 +83,7 @@ def run_up(
     excitation: str = "inertia",
     until: float | None = None,
 ) -> RunUp:
-    """One mode of ``frequency`` (Hz, undamped) under an ``order`` of a shaft that speeds up from rest (rad/s^2).
+    """Return one mode of ``frequency`` (Hz, undamped) under an ``order`` of a shaft that speeds up from rest.
 
     ``until``: speed of the shaft at the end (rad/s), by default well past the peak. Raises ModelError for numbers that
     cannot be, damping that lets nothing resonate, and runs of more than 80 000 periods.
@@ -118,7 +118,7 @@ def run_up(
 
 
 def _displacement(t: np.ndarray, w: float, zeta: float, b: float, excitation: str) -> np.ndarray:
-    """(T,) real part of the response to e^(i theta)."""
+    """Return (T,) real part of the response to e^(i theta)."""
     damped = w * math.sqrt(1 - zeta**2)
     root = complex(-zeta * w, damped)
     first, second = _convolved(t, root, b), _convolved(t, root.conjugate(), b)
@@ -136,7 +136,7 @@ def _displacement(t: np.ndarray, w: float, zeta: float, b: float, excitation: st
 
 
 def _convolved(t: np.ndarray, root: complex, b: float) -> np.ndarray:
-    """(T,) int_0^t e^(i b s^2 / 2 + root (t - s)) ds, by scaled complementary error functions where they are small."""
+    """Return (T,) int_0^t e^(i b s^2 / 2 + root (t - s)) ds, by scaled complementary error functions."""
     half = cmath.sqrt(-0.5j * b)
     first, last = half * (1j * root / b), half * (t + 1j * root / b)
     # erfc(u) = e^(-u^2) w(i u), and where Re u < 0, 2 - e^(-u^2) w(-i u)

@@ -76,7 +76,7 @@ class ValveTrain:
             not_negative_number("engine: mass of a valve", self.mass, "kg")
 
     def timing(self, gas: GasCycle | None) -> dict[str, tuple[float, float]]:
-        """Crank angles (rad, from the top dead centre that fires) where each valve begins to open and is closed."""
+        """Return crank angles (rad, from the firing top dead centre) where each valve begins to open and is closed."""
         opens, closes = (gas.exhaust_opens, gas.intake_closes) if isinstance(gas, FourStroke) else (math.pi, -math.pi)
         ramp = math.radians(self.ramp)
         return {
@@ -88,7 +88,7 @@ class ValveTrain:
 def valve_train(
     m: Mechanism,
     frame: Body,
-    of: Layout,
+    plan: Layout,
     train: ValveTrain,
     fires: Mapping[int, float],
     bore: float,
@@ -104,7 +104,7 @@ def valve_train(
     without a mass of their own have none, rather than that of their parts. Raises ModelError for engines of more than
     two banks and of two strokes, and for cams that no flat tappet can follow.
     """
-    banks = sorted({round(cylinder.bank, 9) for cylinder in of.cylinders})
+    banks = sorted({round(cylinder.bank, 9) for cylinder in plan.cylinders})
     if len(banks) > 2:
         raise ModelError(
             f"engine '{m.name}': it has {len(banks)} banks, and camshafts with a belt each are for one or two; leave "
@@ -135,7 +135,7 @@ def valve_train(
         radius = PULLEY * bore
         belt = "belt" if len(banks) == 1 else f"belt_{row + 1}"
         m.belt(belt, crank.at(0.0, 0.0, z=end), shaft.at(0.0, 0.0, z=end), radius_i=radius, radius_j=2 * radius)
-        for number, cylinder in enumerate(of.cylinders, start=1):
+        for number, cylinder in enumerate(plan.cylinders, start=1):
             if abs(cylinder.bank - bank) > SAME:
                 continue
             for kind, side in (("intake", -0.5), ("exhaust", 0.5)):
@@ -152,13 +152,13 @@ in bores.
 
 
 def _law(begin: float, end: float, lift: float) -> Lift:
-    """Over the cam's angle, from where the valve begins to open."""
+    """Return the lift over the cam's angle, from where the valve begins to open."""
     half = (end - begin) / 4.0
     return Lift.of((half, lift, "modified_trapezoid"), (half, 0.0, "modified_trapezoid"), (2 * math.pi - 2 * half, 0.0))
 
 
 def _base(name: str, laws: Mapping[str, Lift], bore: float, given: float | None) -> float:
-    """Radius of the base circle (m)."""
+    """Return the radius of the base circle (m)."""
     angles = np.linspace(0.0, 2 * math.pi, 1441)
     need = max(float(-(law(angles)[:, 0] + law(angles)[:, 2]).min()) for law in laws.values())
     if given is None:
@@ -183,7 +183,7 @@ def _valve(
     height: float,
     mass: float | None,
 ) -> None:
-    """A valve with the origin of its frame on its tappet's face, x axis away from the crankshaft, and its cam.
+    """Add a valve, its frame on the tappet's face with x away from the crankshaft, and its cam.
 
     ``begin``: crank angle (rad) at which it begins to open. The cam's frame is turned so that its angle is 0 there.
     """
@@ -208,7 +208,7 @@ def _spring(
     seat: float,
     bore: float,
 ) -> None:
-    """The spring that closes a valve; ``face`` and ``seat``: from the crankshaft's axis (m)."""
+    """Add the spring that closes a valve; ``face`` and ``seat``: from the crankshaft's axis (m)."""
     axis, z = where
     closed = face - LENGTH * bore - seat
     if closed <= 0:

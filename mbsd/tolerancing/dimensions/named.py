@@ -19,7 +19,7 @@ from typing import Any
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such, shown
-from mbsd.derivatives.numbers.number_steps import size_of, step_of
+from mbsd.derivatives.numbers.variants import size_of, step_of
 from mbsd.model.body import Marker
 from mbsd.model.change import values_of
 from mbsd.model.joint import Joint
@@ -32,7 +32,7 @@ from mbsd.tolerancing.dimensions.spreads import spread_of
 PIN, PLAY, TOLERANCES = "revolute", "play", "tolerances"
 AXES = ("x", "y")
 LEAST_STEP = 1e-6
-"""Least step of a difference, as part of the size of a number; see mbsd/derivatives/numbers/number_steps.py."""
+"""Least step of a difference, as part of the size of a number; see mbsd/derivatives/numbers/variants.py."""
 SIZES = ("length", "radius", "diameter", "bore")
 """Parts of the names of arguments that are sizes, by which classes and grades go."""
 

@@ -57,14 +57,14 @@ def kernel_refusals(name: str, what: str) -> Iterator[None]:
         ) from error
 
 
-# Materials of bodies without a wish: those of the colour of their role (mbsd/drawing/inks.py).
+# Materials of bodies without a wish: those of the colour of their role (mbsd/drawing/look.py).
 
 ROD = "steel"
 
 
 def materials(m: Mechanism) -> dict[str, str]:
     """Return the material of each moving body."""
-    from mbsd.drawing.inks import colours_by_role
+    from mbsd.drawing.look import colours_by_role
 
     return {body: "aluminium" if word == "silver" else f"aluminium_{word}" for body, word in colours_by_role(m).items()}
 

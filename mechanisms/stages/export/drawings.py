@@ -63,7 +63,7 @@ def svg(solution: Any, time: float) -> str:
 
 def _colours(solution: Any) -> dict[str, str]:
     """Return the colour of each role in a drawing; bodies have that of all pictures."""
-    from mbsd.drawing.inks import body_inks
+    from mbsd.drawing.look import body_inks
     from mbsd.drawing.strokes import ROLES
 
     bodies = {f"body:{name}": ink for name, ink in body_inks(solution.mechanism).items()}

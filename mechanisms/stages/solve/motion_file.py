@@ -252,7 +252,7 @@ def to_motion(
 def _bodies(
     solution: Solution, parts: contract.Parts | None, sources: Mapping[str, Source] | None
 ) -> dict[str, contract.BodyMotion]:
-    from mbsd.drawing.inks import on_dark
+    from mbsd.drawing.look import on_dark
 
     inks = body_colours(solution.mechanism, parts)
     return {

@@ -11,7 +11,7 @@ from shared.contract.skeleton import Carried, CarriedName, Carrier, End, Moving,
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
-    from mbsd.drawing.view.carried import Moving as Drawn
+    from mbsd.drawing.moving_skeleton import Moving as Drawn
     from shared.contract import BodyParts, Parts
 
 
@@ -22,7 +22,7 @@ def body_colours(m: Mechanism, parts: Parts | None) -> dict[str, str]:
     """Return the ink (``#rrggbb``, on light paper) of each moving body; bodies of one material have shades that
     differ.
     """
-    from mbsd.drawing.inks import INKS, apart, colours_by_role
+    from mbsd.drawing.look import INKS, apart, colours_by_role
 
     inks = {body: INKS[word] for body, word in colours_by_role(m).items()}
     if parts is not None:
@@ -71,7 +71,7 @@ def skeleton_of(solution: Solution, provenance: Provenance) -> Skeleton:
 
 def moving_of(solution: Solution, drawn: Drawn | None = None) -> Moving:
     """Return the whole skeleton for any moment; ``drawn``, if it is drawn already."""
-    from mbsd.drawing.view.carried import moving
+    from mbsd.drawing.moving_skeleton import moving
 
     shown = moving(solution) if drawn is None else drawn
     steady = shown.steady

@@ -243,7 +243,7 @@ def _stop(pose: Any) -> float:
 
 
 def _dark(scene: Any) -> None:
-    """Nothing but the flat colours: no world, no lens blur, no view transform."""
+    """Show nothing but the flat colours: no world, no lens blur, no view transform."""
     import bpy
 
     scene.world = bpy.data.worlds.new("dark")
@@ -254,7 +254,7 @@ def _dark(scene: Any) -> None:
 
 
 def _animate(job: Job, bodies: dict[str, Any], camera: Any, texts: list[Any]) -> None:
-    """Linear keys at every frame; angles come unwrapped, so nothing ever turns the wrong way round."""
+    """Set linear keys at every frame; angles come unwrapped, so nothing turns the wrong way round."""
     states = job.states
     for name, thing in bodies.items():
         x, y, theta = np.array([state.bodies[name] for state in states]).T
@@ -274,7 +274,7 @@ def _animate(job: Job, bodies: dict[str, Any], camera: Any, texts: list[Any]) ->
 
 
 def _lift(job: Job, solids: dict[str, Any]) -> None:
-    """Keys of pieces that are ever lifted from where they belong."""
+    """Set keys of pieces that are ever lifted from where they belong."""
     for name in sorted({name for state in job.states for name in state.lifts} & set(solids)):
         heights = np.array([state.lifts.get(name, 0.0) for state in job.states])
         _key(solids[name], "location", [np.zeros(len(heights)), np.zeros(len(heights)), heights])

@@ -197,7 +197,7 @@ def _worn(graph: Graph, most: float, grain: float) -> Any:
 
 
 def _anodised(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
-    """Dyed oxide on blasted aluminium: a coloured metal under a thin clear layer, rubbed bright on its chamfers."""
+    """Return dyed oxide on blasted aluminium: coloured metal under a thin clear layer, bright on its chamfers."""
     worn = _worn(graph, 0.42, grain)
     colour = _mixed(graph, worn, tuple(0.8 * c for c in surface.colour), BARE)
     return _principled(
@@ -212,7 +212,7 @@ def _anodised(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
 
 
 def _brushed(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
-    """Metal brushed lengthwise: fine streaks in roughness and tone along x of the body, highlights across them."""
+    """Return metal brushed lengthwise: fine streaks in roughness and tone along x of the body."""
     streaks = _noise(graph, _place(graph, (14.0, 900.0, 40.0), grain), 3.0, 0.6)
     tangent = graph.add("Tangent", {"direction_type": "RADIAL", "axis": "Y"}).outputs[0]
     return _principled(
@@ -226,12 +226,12 @@ def _brushed(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
 
 
 def _polished(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
-    """Turned and polished; never so smooth that a few samples sparkle."""
+    """Return turned and polished metal, never so smooth that a few samples sparkle."""
     return _principled(graph, Base_Color=surface.colour, Metallic=1.0, Roughness=max(surface.roughness, 0.2))
 
 
 def _satin(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
-    """Hard black anodising: dark, with a wide soft sheen."""
+    """Return hard black anodising: dark, with a wide soft sheen."""
     return _principled(
         graph,
         Base_Color=surface.colour,
@@ -242,7 +242,7 @@ def _satin(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
 
 
 def _plastic(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
-    """Moulded, smooth."""
+    """Return smooth moulded plastic."""
     return _principled(graph, Base_Color=surface.colour, Roughness=surface.roughness)
 
 
@@ -261,7 +261,7 @@ def _printed(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
 
 
 def _rubber(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
-    """Matt, with a grey bloom where one looks along it."""
+    """Return matt rubber, with a grey bloom where one looks along it."""
     return _principled(
         graph,
         Base_Color=surface.colour,
@@ -273,7 +273,7 @@ def _rubber(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
 
 
 def _cast(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
-    """Cast in sand: a rough skin, bright iron where its edges are rubbed."""
+    """Return sand casting: a rough skin, bright iron on its worn edges."""
     skin = _noise(graph, _place(graph, 420.0, grain), 3.0, 0.6)
     worn = _worn(graph, 0.75, grain)
     colour = _mixed(graph, worn, _toned(graph, surface.colour, _swing(graph, skin, 1.0, 0.35)), IRON)
@@ -288,7 +288,7 @@ def _cast(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
 
 
 def _wood(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
-    """Planed and oiled: rings of the year along x of the body, fine pores in them."""
+    """Return planed and oiled wood: rings of the year along x of the body, fine pores in them."""
     slow = _noise(graph, _place(graph, (2.5, 22.0, 22.0), grain), 1.0)
     rings = graph.math("PINGPONG", graph.math("MULTIPLY", slow, 11.0), 1.0)
     pores = _noise(graph, _place(graph, (26.0, 900.0, 900.0), grain), 2.0, 0.6)

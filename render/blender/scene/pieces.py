@@ -28,7 +28,7 @@ LEVEL = 0.999
 
 
 def mark_chamfers(mesh: Any) -> None:
-    """Faces that slope between top and wall and end at a sharp edge are chamfers: the attribute EDGE is 1 there."""
+    """Set the attribute EDGE to 1 on chamfers: faces that slope between top and wall and end at a sharp edge."""
     sharp = np.zeros(len(mesh.edges), bool)
     mesh.attributes["sharp_edge"].data.foreach_get("value", sharp)
     edges = np.empty(len(mesh.loops), np.int32)

@@ -23,11 +23,7 @@ def build_tube(scene: Any, spec: TubeSpec, radius: float) -> Any:
     import bpy
 
     mesh = bpy.data.meshes.new(spec.name)
-    faces: list[tuple[int, ...]] = []
-    for ring in range(spec.points - 1):
-        for side in range(SIDES):
-            a, b = ring * SIDES + side, ring * SIDES + (side + 1) % SIDES
-            faces.append((a, b, b + SIDES, a + SIDES))
+    faces = _round_faces(spec.points, SIDES)
     round_ones = len(faces)
     faces += [tuple(reversed(range(SIDES))), tuple(range((spec.points - 1) * SIDES, spec.points * SIDES))]
     mesh.from_pydata([(0.0, 0.0, 0.0)] * (spec.points * SIDES), [], faces)
@@ -60,7 +56,21 @@ def tube_vertices(path: list[Point], radius: float) -> np.ndarray:
 
 def place_tube(thing: Any, path: list[Point], radius: float) -> None:
     """Lay the tube along ``path``."""
-    thing.data.vertices.foreach_set("co", tube_vertices(path, radius).ravel())
+    _move(thing, tube_vertices(path, radius))
+
+
+def _round_faces(rings: int, sides: int) -> list[tuple[int, ...]]:
+    """Return the faces between neighbouring rings of ``sides`` vertices."""
+    faces: list[tuple[int, ...]] = []
+    for ring in range(rings - 1):
+        for side in range(sides):
+            a, b = ring * sides + side, ring * sides + (side + 1) % sides
+            faces.append((a, b, b + sides, a + sides))
+    return faces
+
+
+def _move(thing: Any, vertices: np.ndarray) -> None:
+    thing.data.vertices.foreach_set("co", vertices.ravel())
     thing.data.update()
 
 
@@ -80,12 +90,8 @@ def build_trail(scene: Any, trail: TrailSpec) -> Any:
     import bpy
 
     mesh = bpy.data.meshes.new(f"trail {trail.name}")
-    faces = []
     rings = trail.rings + CAP
-    for ring in range(rings - 1):
-        for side in range(TRAIL_SIDES):
-            a, b = ring * TRAIL_SIDES + side, ring * TRAIL_SIDES + (side + 1) % TRAIL_SIDES
-            faces.append((a, b, b + TRAIL_SIDES, a + TRAIL_SIDES))
+    faces = _round_faces(rings, TRAIL_SIDES)
     faces.append(tuple(reversed(range(TRAIL_SIDES))))
     mesh.from_pydata([(0.0, 0.0, 0.0)] * (rings * TRAIL_SIDES), [], faces)
     mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
@@ -125,8 +131,7 @@ def trail_vertices(path: list[Point], radius: float) -> np.ndarray:
 
 def place_trail(thing: Any, path: list[Point], radius: float) -> None:
     """Lay the tube along ``path``."""
-    thing.data.vertices.foreach_set("co", trail_vertices(path, radius).ravel())
-    thing.data.update()
+    _move(thing, trail_vertices(path, radius))
 
 
 def _fade(rings: int) -> np.ndarray:

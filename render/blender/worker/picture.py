@@ -259,7 +259,7 @@ def save_picture(scene: Any, job: Job, picture: Picture, over: Path | None) -> P
 
 
 def _save_drawing(scene: Any, job: Job, path: Path) -> None:
-    """Lines on paper instead of the codes that were rendered, as a PNG."""
+    """Save lines on paper instead of the codes that were rendered, as a PNG."""
     import bpy
     import numpy as np
     from PIL import Image

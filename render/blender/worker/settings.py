@@ -80,7 +80,7 @@ def picture_settings(scene: Any, job: Job) -> None:
 
 
 def drawing_settings(scene: Any, job: Job) -> None:
-    """A code for each pixel, and for its quarters where the picture is not too large: one sample in its middle."""
+    """Set a code for each pixel, and for its quarters if the picture is not too large: one sample in its middle."""
     render, cycles = scene.render, scene.cycles
     render.resolution_percentage = 100 * fineness(job)
     render.film_transparent = True
@@ -100,7 +100,7 @@ def fineness(job: Job) -> int:
 
 
 def front_settings(front: Any, scene: Any, job: Job) -> None:
-    """As those of the picture, with an alpha, and sharp edges from more samples: flat colours have no noise."""
+    """Set what the picture has, with an alpha, and sharp edges from more samples: flat colours have no noise."""
     picture_settings(front, job)
     front.render.image_settings.color_mode = "RGBA"
     front.render.dither_intensity = 0.0

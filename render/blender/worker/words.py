@@ -125,7 +125,7 @@ def _legend(draw: Any, writing: Writing, unit: float, origin: tuple[int, int], w
 
 
 def _reference(draw: Any, x: float, y: float, row: LegendRow, wide: int) -> None:
-    """The reference arrow, flat, in the proportions of those in the picture."""
+    """Add the reference arrow, flat, in the proportions of those in the picture."""
     length, ink = row.length * wide, tuple(round(255 * c) for c in row.colour)
     point = min(row.point * wide, 0.45 * length)
     half, shaft = 0.34 * point, 0.11 * point
@@ -142,7 +142,7 @@ def _reference(draw: Any, x: float, y: float, row: LegendRow, wide: int) -> None
 
 
 def _arc(draw: Any, x: float, y: float, radius: float, row: LegendRow) -> None:
-    """The reference arc about (x, y), flat; it reaches as far round as those in the picture do."""
+    """Add the reference arc about (x, y), flat; it reaches as far round as those in the picture."""
     ink, half, shaft = tuple(round(255 * c) for c in row.colour), 0.27 * radius, 0.085 * radius
     head = min(0.55, 0.6 * row.sweep)
     y -= radius * (1 + math.cos(min(row.sweep / 2, math.pi))) / 2  # its middle stands in the row's

@@ -18,7 +18,7 @@ Segment = tuple[float, float, float]
 
 
 def eased(part: float) -> float:
-    """0 .. 1 for 0 .. 1, with rest at both ends."""
+    """Return 0 .. 1 for 0 .. 1, with rest at both ends."""
     u = min(max(part, 0.0), 1.0)
     return u * u * (3 - 2 * u)
 

@@ -85,7 +85,7 @@ SAME, ABOUT = 0.05, 0.2
 
 
 def words_in(language: str, mechanism: str) -> Callable[..., str]:
-    """``say(key, name=...)`` in a language; raises UserError for a language that the table has not."""
+    """Return ``say(key, name=...)`` in a language. Raises UserError for one that the table lacks."""
     if language not in TABLE:
         raise UserError(
             f"{mechanism}: shot.story.language is '{language}'; there is: {', '.join(TABLE)}"
@@ -149,7 +149,7 @@ def captions_of(text: str) -> list[Caption]:
 
 
 def _clock(seconds: float) -> str:
-    """``00:01:02,345``."""
+    """Return a time as ``00:01:02,345``."""
     whole = round(1000 * seconds)
     return f"{whole // 3600000:02d}:{whole // 60000 % 60:02d}:{whole // 1000 % 60:02d},{whole % 1000:03d}"
 
@@ -161,7 +161,7 @@ def _seconds(clock: Sequence[str]) -> float:
 
 
 def chapters(rows: Sequence[tuple[float, float, str]], title: str = "") -> str:
-    """FFMETADATA1 of chapters (start and end in s, title)."""
+    """Return the FFMETADATA1 of chapters (start and end in s, title)."""
     lines = [";FFMETADATA1", *([f"title={_escaped(title)}"] if title else [])]
     for start, end, name in rows:
         lines += ["[CHAPTER]", "TIMEBASE=1/1000", f"START={round(1000 * start)}", f"END={round(1000 * end)}"]

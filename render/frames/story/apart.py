@@ -18,7 +18,7 @@ WORD = "exploded"
 
 
 def run(name: str, preset: Preset) -> None:
-    """The stage. Raises UserError for a machine whose parts lie in one layer."""
+    """Make the picture. Raises UserError for a machine whose parts lie in one layer."""
     out = Out(name)
     target = named(out.folder / f"{WORD}.png", "", preset.suffix)
     stage = Stage(out, target.stem, stage_key(out, preset.of_poster, WORD, word_sources()), [target])

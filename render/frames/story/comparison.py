@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +18,7 @@ from render.film.story.shots.comparison import comparison_shot, differences, ram
 from render.film.story.shots.motion import title
 from render.film.story.story import Curve, Story, curve_of, curves_of
 from render.film.story.words import plain, words_in
-from render.frames.film import has_sound, sound_key, wav_of
+from render.frames.film import finish, has_sound, sound_key, wav_of
 from render.frames.story.drawing import Drawing
 from render.frames.story.strip import Strip
 from render.frames.story.telling import Telling, refuse_long, shown_plain
@@ -66,7 +67,7 @@ def pair_of(outs: Sequence[Out], preset: Preset, half: Preset) -> Pair:
     sceneries = [
         replace(scenery_of(film, None, why, half), curves=curves[0]) for film, why in zip(films, whys, strict=True)
     ]
-    _on_one_scale(sceneries)
+    put_on_one_scale(sceneries)
     tellings = []
     for film, scenery in zip(films, sceneries, strict=True):
         shot = comparison_shot(scenery, ramp, most[0] if most else None, names)
@@ -87,7 +88,7 @@ def _first(curves: Sequence[Curve], name: str) -> list[Curve]:
     return sorted(curves, key=lambda curve: curve.name != name)
 
 
-def _on_one_scale(sceneries: Sequence[Scenery]) -> None:
+def put_on_one_scale(sceneries: Sequence[Scenery]) -> None:
     """Let both cameras stand as far away as the farther one: the larger machine is larger in the picture, too."""
     stands = [scenery.stand() for scenery in sceneries]
     far = max(stand.distance for stand in stands)
@@ -147,7 +148,7 @@ KIND = "compare"
 
 
 def run(name: str, preset: Preset, sound: str = "") -> None:
-    """The stage: out/films/<mechanism>-<preset>-compare.mp4, .srt and .wav, the last unless ``sound`` is "off".
+    """Make out/films/<mechanism>-<preset>-compare.mp4, .srt and .wav, the last unless ``sound`` is "off".
 
     Raises UserError for a mechanism of one kind.
     """
@@ -169,11 +170,7 @@ def run(name: str, preset: Preset, sound: str = "") -> None:
     counts = " and ".join(str(telling.count) for telling in pair.tellings)
     say("film", f"{outs[1].name}: {KIND}: {duration(story.seconds)}, {counts} pictures of {part.width}x{part.height}")
     silent = _silent_film(outs, preset, pair, film)
-    if heard:
-        _with_sound(silent, pair, preset, film)
-    else:
-        wav_of(film).unlink(missing_ok=True)
-        write_bytes(film, silent.read_bytes())
+    finish(silent, partial(_sound, pair, preset) if heard else None, story.total, preset, story.fps, film)
     write_bytes(subtitles, srt(story.captions).encode())
     stage.record()
     words = "with the sound of both" if heard else "silent"
@@ -189,18 +186,15 @@ def _silent_film(outs: list[Out], preset: Preset, pair: Pair, film: Path) -> Pat
     stage = Stage(outs[1], film.stem.replace(outs[1].name, "pictures", 1), _key(outs, preset), [target])
     if not stage.is_fresh():
         made = [rendered(out, part, telling) for out, telling in zip(outs, pair.tellings, strict=True)]
-        encoded(_side_by_side(preset, made), pair.tellings[0].story, pair.drawing, preset, target)
+        encoded(side_by_side(preset, made), pair.tellings[0].story, pair.drawing, preset, target)
         stage.record()
     return target
 
 
-def _with_sound(silent: Path, pair: Pair, preset: Preset, film: Path) -> None:
-    from render.frames.encode import mux
+def _sound(pair: Pair, preset: Preset) -> bytes:
     from render.sound.sound import sound_of_all, wav
 
-    story, waves = pair.tellings[0].story, wav_of(film)
-    write_bytes(waves, wav(sound_of_all(heard_of(pair, preset))))
-    mux(silent, waves, story.total, preset, story.fps, film)
+    return wav(sound_of_all(heard_of(pair, preset)))
 
 
 def heard_of(pair: Pair, preset: Preset) -> list[Heard]:
@@ -232,7 +226,8 @@ def half(preset: Preset) -> Preset:
     return replace(preset, name=f"{preset.name}-half", width=wide, height=high)
 
 
-def _side_by_side(preset: Preset, made: Sequence[Rendered]) -> Iterator[tuple[str, Any]]:
+def side_by_side(preset: Preset, made: Sequence[Rendered]) -> Iterator[tuple[str, Any]]:
+    """Yield the pictures of both variants in one, with the names of both; one that stands is pasted once."""
     from PIL import Image
 
     kept: tuple[str, Any] | None = None

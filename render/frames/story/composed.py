@@ -18,7 +18,6 @@ from render.frames.store import FrameStore
 from render.frames.story.drawing import Drawing, png
 from render.frames.story.telling import Telling
 from render.presets import Preset
-from shared.stage.errors import UserError
 from shared.stage.files import whole_file
 from shared.stage.paths import Out, out_root
 
@@ -37,22 +36,13 @@ class Rendered:
     names: list[str]
 
     def pages(self) -> Iterator[Page]:
-        """Yield the picture of each frame, read once while it stands. Raises UserError for one that changed
-        meanwhile.
-        """
+        """Yield the picture of each frame. Raises UserError for one that changed meanwhile."""
         from PIL import Image
 
-        name, picture = "", None
-        for frame, wanted in enumerate(self.names):
-            if wanted != name or picture is None:
-                content = self.store.read(wanted)
-                if content is None:
-                    self.store.find(wanted.partition("-")[0])  # removes it, so that it is missed
-                    raise UserError(
-                        f"{self.mechanism}: frame {frame} ({wanted}) changed or went while the film was written; the "
-                        "same command renders it again"
-                    )
-                name, picture = wanted, Image.open(io.BytesIO(content)).convert("RGB")
+        before, picture = "", None
+        for name, content in self.store.contents(self.mechanism, self.names):
+            if name != before or picture is None:
+                before, picture = name, Image.open(io.BytesIO(content)).convert("RGB")
             yield name, picture
 
 
@@ -79,7 +69,7 @@ def rendered(out: Out, preset: Preset, telling: Telling) -> Rendered:
 
 
 def encoded(pages: Iterable[Page], story: Story, drawing: Drawing, preset: Preset, film: Path) -> None:
-    """The film with all that is laid over its pictures and with its chapters, written whole."""
+    """Write the film whole, with all that is laid over its pictures and with its chapters."""
     with scratch_folder(out_root() / ".blender") as scratch:
         bare, listing = scratch / film.name, scratch / "chapters.txt"
         encode.encode(_composed(pages, story, drawing), story.total, preset, story.fps, bare)

@@ -126,7 +126,7 @@ class Drawing:
         return page
 
     def _heads(self, draw: Any) -> None:
-        """Names of variants, each with a line as its curves are."""
+        """Draw names of variants, each with a line as its curves are."""
         size, edge = frame.LETTER * self.unit, frame.EDGE * self.unit
         for right, top, words, colour in self.heads:
             wide = size * width_of(words, True) + 3.0 * size
@@ -137,7 +137,7 @@ class Drawing:
             draw.text((x + 2.3 * size, mid), words, fill=(*INK, 255), font=font(size, True), anchor="lm")
 
     def _rate(self, draw: Any, words: str) -> None:
-        """At the upper left; where names are there, in the middle between them, or at the right."""
+        """Draw the rate at the upper left; beside names in the middle between them, or at the right."""
         size, edge = frame.SMALL * self.unit, frame.EDGE * self.unit
         wide, x = size * width_of(words) + 1.2 * size, edge
         if self.heads:
@@ -146,7 +146,7 @@ class Drawing:
         draw.text((x + 0.6 * size, edge + 0.875 * size), words, fill=(*INK, 255), font=font(size), anchor="lm")
 
     def _caption(self, draw: Any, over: Over) -> None:
-        """In the middle over the strip, or over where it would be."""
+        """Draw the caption in the middle over the strip, or over where it would be."""
         size, lines = caption_lines(over.caption, self.wide, self.high)
         low = self.high - self.below - (0.35 if self.below else 0.8) * frame.EDGE * self.unit
         half = max(size * width_of(line) for line in lines) / 2 + 0.7 * size
@@ -178,7 +178,7 @@ class Drawing:
             draw.text(at_mass, leader.quiet, fill=(*QUIET, alpha), font=font(size), anchor="lm")
 
     def _notes(self, draw: Any, notes: tuple[Note, ...], shown: float) -> None:
-        """Beyond the tips of arrows, within the picture, and apart from each other."""
+        """Draw notes beyond the tips of arrows, within the picture, and apart from each other."""
         size, edge = frame.SMALL * self.unit, frame.EDGE * self.unit
         low = self.high - self.below - 0.12 * self.unit
         taken: list[tuple[float, float, float, float]] = []
@@ -188,7 +188,7 @@ class Drawing:
             y = note.y * self.high + note.dy * (high / 2 + 1.2 * size)
             x = min(max(x, edge + wide / 2), self.wide - self.right - edge - wide / 2)
             y = min(max(y, edge + 2.2 * size + high / 2), low - high / 2)
-            if _on_arrow((x - wide / 2, y - high / 2, x + wide / 2, y + high / 2), note, self.wide, self.high):
+            if is_on_arrow((x - wide / 2, y - high / 2, x + wide / 2, y + high / 2), note, self.wide, self.high):
                 away = note.dx if abs(note.dx) > LEANS else 1.0 if x < self.wide / 2 else -1.0
                 x += math.copysign(wide / 2 + 1.1 * size, away)
                 x = min(max(x, edge + wide / 2), self.wide - self.right - edge - wide / 2)
@@ -223,7 +223,7 @@ def _overlap(a: tuple[float, float, float, float], b: tuple[float, float, float,
     return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
 
 
-def _on_arrow(box: tuple[float, float, float, float], note: Note, wide: int, high: int) -> bool:
+def is_on_arrow(box: tuple[float, float, float, float], note: Note, wide: int, high: int) -> bool:
     """Return True if a box (pixels) that could not go farther lies on the arrow whose tip it names."""
     tip, back = np.array([note.x * wide, note.y * high]), np.linspace(0.0, 0.25 * min(wide, high), 40)
     x, y = (tip[:, None] - np.array([[note.dx], [note.dy]]) * back).tolist()

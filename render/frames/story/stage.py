@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from render.film.inputs import encoder_version, named, stage_key
-from render.frames.film import has_sound, sound_key, wav_of
+from render.frames.film import finish, has_sound, sound_key, wav_of
 from render.freshness import clearance_files
 from render.presets import Preset
 from shared.stage.console import say
@@ -23,7 +24,7 @@ KIND = "explain"
 
 
 def run(name: str, preset: Preset, show: str = "", loop: float = 0.0, sound: str = "") -> None:
-    """The stage: out/films/<mechanism>-<preset>-explain.mp4, .srt and .wav, the last unless ``sound`` is "off".
+    """Make out/films/<mechanism>-<preset>-explain.mp4, .srt and .wav, the last unless ``sound`` is "off".
 
     With ``loop`` it is a silent film of so many seconds that ends as it begins. Raises UserError, before a frame is
     rendered, for what the shot asks of the story and cannot be.
@@ -43,11 +44,7 @@ def run(name: str, preset: Preset, show: str = "", loop: float = 0.0, sound: str
     story, (film, subtitles, *_) = telling.story, stage.outputs
     say("film", f"{out.name}: {KIND}: {telling.said()}")
     silent = _silent_film(out, preset, show, loop, telling)
-    if heard:
-        _with_sound(silent, telling, preset, film)
-    else:
-        wav_of(film).unlink(missing_ok=True)
-        write_bytes(film, silent.read_bytes())
+    finish(silent, partial(_sound, telling) if heard else None, story.total, preset, story.fps, film)
     write_bytes(subtitles, srt(story.captions).encode())
     stage.record()
     say(
@@ -71,14 +68,11 @@ def _silent_film(out: Out, preset: Preset, show: str, loop: float, telling: Tell
     return target
 
 
-def _with_sound(silent: Path, telling: Telling, preset: Preset, film: Path) -> None:
-    from render.frames.encode import mux
+def _sound(telling: Telling) -> bytes:
     from render.sound.sound import sound_of, wav
 
-    story, clock = telling.story, telling.film.clock
-    waves = wav_of(film)
-    write_bytes(waves, wav(sound_of(telling.film, story.time_map(clock.start, clock.end, clock.repeats))))
-    mux(silent, waves, story.total, preset, story.fps, film)
+    clock = telling.film.clock
+    return wav(sound_of(telling.film, telling.story.time_map(clock.start, clock.end, clock.repeats)))
 
 
 def film_of(out: Out, preset: str, show: str = "", loop: float = 0.0) -> Path:

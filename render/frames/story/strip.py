@@ -88,7 +88,7 @@ def fitted(text: str, size: float, wide: float, most: int, bold: bool = False) -
 
 
 def card(draw: Any, box: tuple[float, float, float, float], size: float, shown: float = 1.0) -> None:
-    """A dark card with round corners on an RGBA layer."""
+    """Draw a dark card with round corners on an RGBA layer."""
     draw.rounded_rectangle(box, radius=0.45 * size, fill=(*CARD, round(255 * CARD_ALPHA * shown)))
 
 
@@ -270,7 +270,7 @@ class Strip:
         self, draw: Any, curve: Curve, panel: tuple[float, float, float, float], span: tuple[float, float],
         weight: float, ink: tuple[int, ...],
     ) -> None:  # fmt: skip
-        """Its highest and lowest values stay, however many times there are."""
+        """Draw a curve; its highest and lowest values stay, however many times there are."""
         times = np.linspace(self.start, self.end, POINTS)
         inside = curve.time[(curve.time >= self.start) & (curve.time <= self.end)]
         peaks = [curve.time[int(k)] for k in (curve.values.argmin(), curve.values.argmax())]

@@ -206,14 +206,14 @@ def _drawing(out: Out, preset: Preset, film: Film, story: Story, known: list[str
     words = out.name.replace("_", " ").replace("-", ": ")
     said = tuple(re.split(r"(?<=[.!?])\s+(?=[A-Z0-9])", " ".join(description(out.name).split("\n\n")[0].split())))
     said = tuple(sentence for sentence in said if sentence != "SI units.")
-    line = plain(BETWEEN.join(_without_slow(fact) for fact in known[1 : 1 + FACTS]))
+    line = plain(BETWEEN.join(without_slow(fact) for fact in known[1 : 1 + FACTS]))
     return Drawing(
         wide=preset.width, high=preset.height, name=words[:1].upper() + words[1:], said=said,
         facts=line[:1].upper() + line[1:], strip=strip_of(film, story, preset),
     )  # fmt: skip
 
 
-def _without_slow(fact: str) -> str:
+def without_slow(fact: str) -> str:
     """Return a fact without the km/h of what is slower than a walk."""
     return re.sub(r" \(([\d.]+) km/h\)", lambda match: match[0] if float(match[1]) >= WALK else "", fact)
 

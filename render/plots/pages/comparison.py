@@ -87,7 +87,7 @@ def _draw(axes: Axes, time: np.ndarray, line: np.ndarray, number: int) -> None:
 
 
 def legend(figure: Figure, names: list[str]) -> None:
-    """The names in their colours, in a line below the title."""
+    """Write the names in their colours, in a line below the title."""
     x = 0.035
     for number, name in enumerate(names):
         text = name.replace("_", " ")

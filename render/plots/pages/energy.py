@@ -111,7 +111,7 @@ def _slope(time: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def _mark(axes: Axes, over: Horizon, motion: Motion, impacts: list[EventMark]) -> None:
-    """A line at each impact with the energy it takes; where they crowd, only the largest get their numbers."""
+    """Draw a line at each impact with the energy it takes; where they crowd, only the largest get numbers."""
     placed: list[float] = []
     span = float(over.values[-1] - over.values[0])
     beside = blended_transform_factory(axes.transData, axes.transAxes)

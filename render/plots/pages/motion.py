@@ -93,7 +93,7 @@ def draw(axes: Axes, over: Horizon, words: str, unit: str, lines: Sequence[Line]
 
 
 def _largest(axes: Axes, over: Horizon, unit: str, values: np.ndarray, floor: float) -> None:
-    """A dot where the first line is largest, and what it is there, in words above the axes."""
+    """Draw a dot where the first line is largest, and its value above the axes."""
     k = first_peak(np.abs(values))
     if abs(values[k]) <= floor:
         return
@@ -176,7 +176,7 @@ def _draw(axes: Axes, angle: np.ndarray, values: np.ndarray, ink: str) -> None:
 def _piece(
     axes: Axes, angle: np.ndarray, values: np.ndarray, ends: tuple[float, float], ink: str, width: float
 ) -> None:
-    """Between two angles of one turn."""
+    """Draw a piece between two angles of one turn."""
     low, high = ends
     if high - low < STILL:
         return

@@ -50,7 +50,7 @@ def gas(motion: Motion) -> Figure:
 
 
 def _over_crank(axes: Axes, motion: Motion, chambers: list[tuple[str, GasMotion, str]]) -> None:
-    """Pressure over the angle since the firing, one cycle; over time where no crank is known."""
+    """Draw pressure over the angle since the firing, one cycle; over time if no crank is known."""
     turning = [chamber for _, chamber, _ in chambers if chamber.crank_angle is not None]
     ends = []
     for name, chamber, ink in chambers:

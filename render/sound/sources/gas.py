@@ -26,7 +26,7 @@ LONG = (0.0005, 0.02)
 
 
 def play(setting: Setting, desk: Desk) -> None:
-    """Every gas whose pressure rises steeply."""
+    """Play every gas whose pressure rises steeply."""
     for _, force in setting.heard(setting.motion.forces):
         if force.gas is not None and force.actions:
             _blows(setting, desk, force)

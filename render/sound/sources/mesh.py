@@ -36,7 +36,7 @@ MOST = 60_000
 
 
 def play(setting: Setting, desk: Desk) -> None:
-    """The teeth of every pair that has some."""
+    """Play the teeth of every pair that has some."""
     for _, joint in setting.heard(setting.motion.joints):
         if joint.shape is not None and joint.shape.teeth:
             _pair(setting, desk, joint, joint.shape)

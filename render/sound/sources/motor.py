@@ -41,7 +41,7 @@ REST = 0.1
 
 
 def play(setting: Setting, desk: Desk) -> None:
-    """The motors of drivers, and of forces that drive."""
+    """Play the motors of drivers, and of forces that drive."""
     for _, driver in setting.heard(setting.motion.drivers):
         bodies = driver.bodies or ("ground", "ground")
         if not _takes(setting, driver.power):

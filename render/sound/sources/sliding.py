@@ -44,7 +44,7 @@ class Rubbing(NamedTuple):
 
 
 def play(setting: Setting, desk: Desk) -> None:
-    """The noise of all that rubs."""
+    """Play the noise of all that slides with friction."""
     for rubbing in _all(setting):
         if rubbing.power.max(initial=0.0) > 0:
             level = of_power(setting.series(rubbing.power), EFFICIENCY) * (setting.rate > 0)

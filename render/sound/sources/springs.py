@@ -32,7 +32,7 @@ STEEL = Matter(205e9, DENSITY, 0.02)
 
 
 def play(setting: Setting, desk: Desk) -> None:
-    """Every spring that holds energy."""
+    """Play every spring that holds energy."""
     for name, force in setting.heard(setting.motion.forces):
         if force.look in ("coil", "spiral") and max(force.potential, default=0.0) > 0 and force.actions:
             _spring(setting, desk, name, force)

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from mbsd import AssemblyError, BranchError, LimitError, Mechanism, MechanismError, SingularPoseError, Solution
-from mbsd.drawing.view.carried import Moving, moving
-from mbsd.drawing.view.redrawn import redrawn
+from mbsd.drawing.moving_skeleton import Moving, moving, redrawn
 from mechanisms.stages.loading import loading
 from mechanisms.stages.loading.inputs import author_files, path_of, recording
 from mechanisms.stages.solve import solving

@@ -20,7 +20,7 @@ from mbsd import Mechanism, MechanismError, fit_path
 from mbsd.arrays.packing import pack
 from mbsd.kinematics.pose.initial import start_pose
 from mbsd.synthesis.designs import Designs
-from mbsd.synthesis.varied import Varied
+from mbsd.synthesis.variables import Varied
 from shared.stage.errors import UserError
 from studio.live.child.author import Author
 from studio.live.numbers import in_digits, numbers_of

@@ -9,10 +9,10 @@ import pytest
 from scipy.optimize import root
 
 from mbsd import ModelError
+from mbsd.machines.body.chain import Tempo
 from mbsd.machines.body.figure import Figure
 from mbsd.machines.body.hip_thrust import hip_thrust, placed_on_bench
 from mbsd.machines.body.lift import Lift, lifted
-from mbsd.machines.body.repetition import Tempo
 from mbsd.machines.body.segments import DE_LEVA_WOMEN
 
 G = np.array([0.0, -9.80665])
@@ -208,7 +208,7 @@ def test_a_woman_from_another_table_lifts_as_well() -> None:
     [
         ({"load": -5.0}, r"hip_thrust: load is -5 kg; it must be 0 kg or more"),
         ({"flexion": (140.0, 0.0)}, r"flexion is 140 degrees at the bottom; it must be from -30 to 120"),
-        ({"flexion": (90.0,)}, r"flexion has 1 values; give degrees at the bottom and at the top"),
+        ({"flexion": (90.0,)}, r"flexion has 1 value; give degrees at the bottom and at the top"),
         ({"distance": 2.0}, r"the ankle is 2\.\d* m from the edge of the pad.*change distance, bench or flexion"),
         ({"pressure": 0.5}, r"the floor pushes 0\.5 m in front of the ankle, but the foot reaches from"),
         ({"bench": 2.0}, r"the knee is -1\.\d+ m over the edge.*lower bench"),

@@ -13,8 +13,8 @@ from mbsd import Mechanism, ModelError, four_stroke
 from mbsd.machines.engines.block import Block, mounts_of_frequency
 from mbsd.machines.engines.engine import engine
 from mbsd.machines.engines.firing import firing
+from mbsd.machines.engines.layout import named
 from mbsd.machines.engines.master_rod import MasterRod
-from mbsd.machines.engines.named import named
 
 BORE, STROKE, ROD, SPEED = 0.1, 0.1, 0.22, 100.0
 THROW, AROUND = STROKE / 2, 0.056
@@ -176,7 +176,7 @@ def test_an_engine_on_mounts_has_a_master_rod() -> None:
         ({"layout": "I4", "rods": "master"}, "rods 'master', but no throw has two rods"),
         ({"rods": MasterRod(radius=-0.1)}, "radius of the knuckle pins is -0.1 m; it must be positive"),
         ({"rods": MasterRod(radius=0.2)}, "knuckle pins are 200 mm from the crank pin.*less than 170 mm"),
-        ({"rods": MasterRod(angles=(72, 144))}, "2 angles of knuckle pins; a master rod here carries 4"),
+        ({"rods": MasterRod(angles=(72, 144))}, "2 angles for knuckle pins; a master rod here carries 4 other rods"),
         (
             {"rods": MasterRod(angles=(72, 72, 216, 288))},
             "knuckle pins of cylinders 2 and 3 are in one place, 72 degrees",

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from mbsd import ModelError, four_stroke
-from mbsd.machines.engines.block import Block, Mount, mounts_of_frequency
+from mbsd.machines.engines.block import Block, Mount, mount_response, mounts_of_frequency
 from mbsd.machines.engines.engine import engine
-from mbsd.machines.engines.mount_response import mount_response
 
 MASS, INERTIA, FREQUENCY, ZETA = 150.0, 4.0, 8.0, 0.1
 PLACES = ((-0.30, -0.10), (0.30, -0.10), (0.0, 0.20))
@@ -98,3 +97,15 @@ def test_what_has_no_response_is_refused() -> None:
             mount_response(driven, [10.0], orders)
     with pytest.raises(ModelError, match="motor_on of the block is 'floor'; it is 'block' or 'ground'"):
         Block(1.0, 1.0, (Mount((0.0, 0.0), (1.0, 1.0)),), motor_on="floor")
+
+
+def test_bad_blocks_are_refused() -> None:
+    with pytest.raises(ModelError, match="mass of the block is 0 kg"):
+        Block(0.0, 1.0, mounts_of_frequency(1.0, 1.0, PLACES))
+    with pytest.raises(ModelError, match="needs a list of Mount"):
+        Block(1.0, 1.0, ())
+    with pytest.raises(ModelError, match="stiffness of the mount"):
+        Mount((0.0, 0.0), (-1.0, 0.0))
+    with pytest.raises(ModelError, match="frequency of the mounts is -8"):
+        mounts_of_frequency(1.0, -8.0, PLACES)
+    assert np.isfinite(mounts_of_frequency(1.0, 8.0, PLACES)[0].stiffness[0])

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import io
 import math
+from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.special import fresnel
 
-from mbsd import ModelError
-from mbsd.machines.engines.block import Block, mounts_of_frequency
+from mbsd import ModelError, study
+from mbsd.machines.engines.block import Block, mount_response, mounts_of_frequency
 from mbsd.machines.engines.engine import engine
-from mbsd.machines.engines.mount_response import mount_response
 from mbsd.machines.engines.run_up import run_up
+from tools.documents.pages import between, replaced
+from tools.documents.run_up import BEGIN, DAMPING_RATIO, END, GRID, RATES, build, measure, picture, table
 
 PLACES = ((-0.30, -0.10), (0.30, -0.10), (0.0, 0.20))
 SIZE = {"bore": 0.08, "stroke": 0.08, "rod": 0.14, "piston_mass": 0.5, "rod_mass": 0.6}
@@ -111,3 +115,46 @@ def test_an_acceleration_starts_from_the_given_speed() -> None:
     assert m.simulate(2.0, steps=10).body("crank").omega[-1] == pytest.approx(30.0)
     with pytest.raises(ModelError, match="engine 'I1': acceleration is nan"):
         engine("I1", **SIZE, acceleration=math.nan)
+
+
+PAGE = (Path(__file__).resolve().parents[3] / "docs/engines.md").read_text()
+
+
+@pytest.fixture(scope="module")
+def runs() -> pd.DataFrame:
+    """Return the runs of the inline four on soft mounts that the page shows."""
+    grid = {"layout": ["I4"], "frequency": [8.0], "damping_ratio": [DAMPING_RATIO], "rate": list(RATES)}
+    return study(build, grid, measure, folder=None, processes=1, progress=False)
+
+
+def test_runs_agree_with_one_mode_in_closed_form(runs: pd.DataFrame) -> None:
+    assert list(runs["reason"].isna()) == [True, True]
+    assert list(runs["order of displacement"]) == [2.0, 2.0]
+    assert list(runs["displacement"]) == pytest.approx(list(runs["expected displacement"]), rel=0.02)
+    assert list(runs["speed of displacement"]) == pytest.approx(list(runs["speed of expected displacement"]), rel=0.02)
+    slow, fast = runs["displacement"] / runs["steady displacement"]
+    assert fast < 0.7 < 0.95 < slow
+
+
+def test_the_page_shows_what_the_study_finds(runs: pd.DataFrame) -> None:
+    shown = between(PAGE, BEGIN, END).strip().splitlines()
+    head, line, row = table(runs).splitlines()
+    assert shown[:2] == [head, line]
+    assert row in shown, "docs/engines.md shows something else: make study-run-up"
+    names = [tuple(text.split(" | ")[:2]) for text in shown[2:]]
+    assert names == [(f"| {layout}", f"{hertz:g} Hz") for layout in GRID["layout"] for hertz in GRID["frequency"]]
+
+
+def test_text_between_markers_is_replaced_and_a_missing_marker_is_an_error() -> None:
+    assert replaced(f"before {BEGIN}\nold\n{END} after", BEGIN, END, "new") == f"before {BEGIN}\nnew\n{END} after"
+    with pytest.raises(ValueError, match="the page has no"):
+        replaced(f"{END} {BEGIN}", BEGIN, END, "new")
+
+
+def test_the_picture_is_small(runs: pd.DataFrame) -> None:
+    others = [runs.assign(layout=layout, frequency=hertz) for layout in GRID["layout"] for hertz in GRID["frequency"]]
+    many = pd.concat([frame.assign(damping_ratio=zeta) for frame in others for zeta in GRID["damping_ratio"]])
+    assert np.prod([len(values) for values in GRID.values()]) == 120
+    file = io.BytesIO()
+    picture(many).savefig(file, format="svg")
+    assert len(file.getvalue()) < 300_000

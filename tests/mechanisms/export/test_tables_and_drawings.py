@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 
 from mbsd import Mechanism, constant_rate
 from mbsd.base.files import FORMULA, csv_text, frame_csv
-from mbsd.drawing.inks import body_inks
+from mbsd.drawing.look import body_inks
 from mechanisms.stages.dxf_file import LONGEST, Layers
 from mechanisms.stages.export import stage
 from mechanisms.stages.export import stage as export

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from mbsd.drawing.view.carried import moving
+from mbsd.drawing.moving_skeleton import moving
 from mechanisms.belt_drive import mechanism as belt
 from mechanisms.four_bar_motor import mechanism as motor
 from mechanisms.planetary_gear import mechanism as planetary

@@ -152,11 +152,11 @@ def test_a_timing_that_cannot_be_is_as_good_as_none(out_root: Path, tmp_path: Pa
     store = FrameStore(tmp_path)
     timing = Timing(preset="tiny", device="CPU", work=1, rendered=10, wall=1.1, cycles=1.0, overhead=1.1)
     jsonfile.write(store.timing, timing)
-    assert frames._forecast(TINY, store)
+    assert frames.forecast(TINY, store)
     document = json.loads(store.timing.read_bytes()) | {field: value}
     store.timing.write_bytes(json.dumps(document, ensure_ascii=False).encode(errors="surrogateescape"))
     assert store.read_timing() is None
-    assert frames._forecast(TINY, store) is None
+    assert frames.forecast(TINY, store) is None
 
 
 def test_unfinished_files_are_swept(tmp_path: Path):
@@ -195,12 +195,12 @@ def test_the_forecast_scales_what_was_measured(out_root: Path):
         )
         jsonfile.write(FrameStore(Out("four_bar").frames(preset)).timing, timing)
     other = FrameStore(Out("slider").frames("preview"))
-    assert frames._forecast(Preset("preview", 2000, 2000, 1), other) == (pytest.approx(12.0), "scaled from draft")
-    assert frames._forecast(PRESETS["draft"], store) == (pytest.approx(3.0), "as measured before")
+    assert frames.forecast(Preset("preview", 2000, 2000, 1), other) == (pytest.approx(12.0), "scaled from draft")
+    assert frames.forecast(PRESETS["draft"], store) == (pytest.approx(3.0), "as measured before")
 
 
 def test_nothing_measured_means_no_forecast_yet(out_root: Path):
-    assert frames._forecast(TINY, FrameStore(Out("four_bar").frames("tiny"))) is None
+    assert frames.forecast(TINY, FrameStore(Out("four_bar").frames("tiny"))) is None
 
 
 @pytest.mark.parametrize(

@@ -1,19 +1,25 @@
-"""Two variants beside each other: one clock, a stop where they differ most, curves over each other."""
+"""Two variants beside each other: one clock, a stop where they differ most, one film with both sounds."""
 
 from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
 from render.film.story.scenery import Stand
+from render.frames.encode import ffmpeg, refuse_other_than
 from render.frames.story import comparison
-from render.frames.story.comparison import FIRST, SECOND, Pair, _on_one_scale, pair_of
-from render.presets import PRESETS, preset_named
+from render.frames.story.comparison import FIRST, SECOND, Pair, pair_of, put_on_one_scale
+from render.presets import PRESETS, Preset, preset_named
 from shared.contract import read_motion, write_motion
 from shared.contract.shot import Shot, Story
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
+from tests.render.sound.heard import measured
 from tools.fixtures import film_fixture
 
 NAMES = ("v_twin", "v_twin-bank_45")
@@ -72,7 +78,7 @@ def test_both_are_on_one_scale_unless_one_would_be_lost(far: float, held: list[f
             self.held = stand
 
     both = [Asked(0.4), Asked(far)]
-    _on_one_scale(both)  # pyright: ignore[reportArgumentType]
+    put_on_one_scale(both)  # pyright: ignore[reportArgumentType]
     assert [each.held.distance for each in both] == held
 
 
@@ -101,7 +107,7 @@ def test_halves_fill_the_picture() -> None:
 
     for preset in (wide, tall):
         half = comparison.half(preset)
-        [(_, page)] = comparison._side_by_side(preset, [Made(half, (255, 0, 0)), Made(half, (0, 0, 255))])  # pyright: ignore[reportArgumentType]
+        [(_, page)] = comparison.side_by_side(preset, [Made(half, (255, 0, 0)), Made(half, (0, 0, 255))])  # pyright: ignore[reportArgumentType]
         assert page.size == (preset.width, preset.height)
         assert page.getpixel((5, 5)) == (255, 0, 0)
         assert page.getpixel((page.width - 5, page.height - 5)) == (0, 0, 255)
@@ -119,3 +125,33 @@ def test_what_is_missing_is_named(out_root) -> None:
     with pytest.raises(UserError, match="v_twin-bank_45"):
         comparison.run("v_twin", PRESETS["draft"])
     assert Out(NAMES[0]).shot.is_file()
+
+
+TINY = Preset("draft-tiny", 96, 54, 1)
+
+
+def test_it_has_both_pictures_and_both_sounds(out_root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    outs = [film_fixture.write(Shot(seconds_per_turn=0.3), name=name) for name in ("v_twin", "v_twin-bank_45")]
+    comparison.run("v_twin", TINY)
+    capsys.readouterr()
+    film = outs[1].film("draft-tiny").with_stem("v_twin-bank_45-draft-tiny-compare")
+    waves, subtitles = film.with_suffix(".wav"), film.with_suffix(".srt")
+    listing = subprocess.run([ffmpeg(), "-i", str(film)], capture_output=True, text=True).stderr
+    assert re.search(r"Audio: aac.*48000 Hz, stereo", listing)
+    assert re.findall(r"title\s*: (.*)", listing) == ["V twin", "Title", "Side by side"]
+    total = pair_of(outs, TINY, comparison.half(TINY)).tellings[0].story.total
+    refuse_other_than(film, film.name, ffmpeg(), total, TINY, 30, 60.0)
+    assert abs(measured(waves)[0] + 16.0) < 0.3
+    content = film.read_bytes(), waves.read_bytes(), subtitles.read_bytes()
+
+    comparison.run("v_twin", TINY)
+    assert "nothing to do" in capsys.readouterr().out
+    comparison.run("v_twin", TINY, "off")
+    said = capsys.readouterr().out
+    assert "silent" in said
+    assert "to render" not in said
+    assert not waves.exists()
+    assert "Audio" not in subprocess.run([ffmpeg(), "-i", str(film)], capture_output=True, text=True).stderr
+    comparison.run("v_twin", TINY)
+    assert "to render" not in capsys.readouterr().out
+    assert (film.read_bytes(), waves.read_bytes(), subtitles.read_bytes()) == content

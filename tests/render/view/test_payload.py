@@ -1,8 +1,11 @@
-"""The payload: what is in it is what the files say, and its bytes give it back."""
+"""The payload of the page has what the files say, orders and places of gaps included."""
 
 from __future__ import annotations
 
+import json
 import math
+import os
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -12,16 +15,24 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
+from mbsd.results.orders import Orders
 from render.film.solids import read_triangles
-from render.view.document import encode
-from render.view.payload import read_payload
+from render.view.bundle import PAGE, bundle, node, node_modules
+from render.view.document import document, encode
+from render.view.loads import middle
+from render.view.payload import payload, read_payload
 from render.view.solid import Meshes, shapes
 from shared.contract import read_motion
+from shared.contract.quantity import written
 from shared.contract.skeleton import read_skeleton, write_skeleton
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
+from tests.render.test_plot_pages import motion_of
 from tests.render.view.decoded import decoded
+from tests.results.test_couples import two_cylinders
+from tests.running.needs import needed
 from tools.fixtures import film_fixture
+from tools.models.motions import plain_skeleton
 
 KINDS = st.sampled_from([np.float32, np.float64, np.uint8, np.int8, np.int16, np.uint16, np.uint32])
 
@@ -126,3 +137,55 @@ def test_without_parts_there_is_the_skeleton_alone(out: Out) -> None:
 def _volume(triangles: np.ndarray) -> float:
     a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
     return float((a * np.cross(b, c)).sum() / 6)
+
+
+def largest(orders: Orders, unit: str, order: float) -> str:
+    return f"order {order:g} {written(float(orders.largest[orders.index(order)]), unit)}"
+
+
+def test_bars_name_the_largest_orders_of_what_is_chosen(tmp_path: Path) -> None:
+    chromium = needed("chromium")
+    m = two_cylinders()
+    m.bodies["piston_1"].mass = 0.7
+    motion, sol = motion_of(m), m.sweep(steps=360)
+    content = encode(payload(motion, plain_skeleton(motion).moving))
+    (tmp_path / "view.html").write_bytes(document("Twin", content, bundle()))
+    done = subprocess.run(
+        [str(node()), str(Path(__file__).with_name("orders.cjs")), str(tmp_path / "view.html")],
+        env=os.environ
+        | {
+            "NODE_PATH": str(node_modules()),
+            "CHROMIUM": str(chromium),
+            "PAGE_BROWSER": str(PAGE / "browser" / "browser.cjs"),
+        },
+        capture_output=True, text=True, timeout=200, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr[-3000:]
+    seen = json.loads(done.stdout)
+    assert not seen["errors"]
+    shown = {chart["title"]: chart for chart in seen["whole"]}
+    force, torque = sol.orders(sol.shaking().force), sol.orders(sol.driver("motor").effort)
+    assert shown["Orders of the shaking force"]["named"][:2] == [largest(force, "N", order) for order in (2, 1)]
+    assert shown["Orders of motor"]["named"][0] == largest(torque, "N m", 2)
+    assert all(chart["inked"] for chart in seen["whole"])
+    (driver,) = seen["driver"]
+    assert driver["title"] == "Orders of the effort"
+    assert driver["named"] == shown["Orders of motor"]["named"]
+    assert not seen["body"]
+
+
+def box(size: tuple[float, float, float], at: tuple[float, float, float]) -> np.ndarray:
+    from trimesh import creation
+
+    return np.asarray(creation.box(size).apply_translation(at).triangles, float)
+
+
+@settings(max_examples=20, deadline=None)
+@given(gap=st.floats(1e-4, 5e-3), scale=st.sampled_from([0.1, 1.0, 30.0]), shift=st.floats(-0.02, 0.02))
+def test_between_two_boxes(gap: float, scale: float, shift: float) -> None:
+    plate = box((0.2 * scale, 0.1 * scale, 0.01 * scale), (0, 0, 0))
+    bar = box((0.02 * scale, 0.02 * scale, 0.05 * scale), (0.05 * scale, shift * scale, (0.03 + gap) * scale))
+    x, y, z = middle(plate, bar) / scale
+    assert abs(z - (0.005 + gap / 2)) < 0.25 * gap + 2e-4
+    assert abs(x - 0.05) <= 0.0108
+    assert abs(y - shift) <= 0.0108

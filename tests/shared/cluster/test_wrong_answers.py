@@ -13,7 +13,7 @@ import pytest
 
 from mbsd.dealing import deal, hand
 from mbsd.dealing.pools import Dask
-from mbsd.dealing.wrong_answer import WrongAnswer, printable
+from mbsd.dealing.report import WrongAnswer, printable
 from shared.cluster.deal import Deal, Work, content_hash
 from shared.stage.errors import UserError
 from tests.shared.cluster import lying

@@ -83,7 +83,7 @@ def test_numbers_put_a_thing_there_at_the_start(swing: tuple) -> None:
 
 def test_elsewhere_and_what_no_number_moves_are_refused(swing: tuple) -> None:
     author, _ = swing
-    with pytest.raises(UserError, match=r"at its start alone, not at 0\.2 s"):
+    with pytest.raises(UserError, match=r"at the start alone, .*0\.2 s"):
         dragged(author, {}, {"kind": "point", "name": "tip"}, 0.2, [0.1, 0.1])
     with pytest.raises(UserError, match="no number of Params decides where 'A' is at the start"):
         dragged(author, {}, {"kind": "joint", "name": "A"}, 0.0, [0.1, 0.1])

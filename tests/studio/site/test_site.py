@@ -136,7 +136,7 @@ def test_two_sites_are_not_made_in_one_folder_at_a_time(tmp_path: Path, monkeypa
     second: list[BaseException] = []
 
     def meanwhile(names: list[str]) -> int:
-        with pytest.raises(Busy, match=r"another process makes .*site; wait for it or stop it") as refused:
+        with pytest.raises(Busy, match=r"another process writes .*site; wait for it or stop it") as refused:
             site_build.run(["trammel"], folder)
         second.append(refused.value)
         return 1

@@ -11,7 +11,7 @@ import matplotlib as mpl
 from matplotlib.colors import to_hex
 
 from mbsd.drawing import look
-from mbsd.drawing.inks import hex_of, lch_of, on_dark
+from mbsd.drawing.look import hex_of, lch_of, on_dark
 
 # The pictures of docs/ on dark paper: the same SVG with its colours exchanged, for pages that a dark system shows.
 
@@ -53,7 +53,7 @@ def data_colours() -> frozenset[str]:
 # A GIF of docs/ on dark paper: its tables of colours exchanged, every pixel as it is.
 #
 # Edges are drawn soft, so a table has all that lies between an ink and white. As white becomes the dark paper and inks
-# become what :func:`mbsd.drawing.inks.on_dark` says, what lies between them stays in between: its lightness L becomes a
+# become what :func:`mbsd.drawing.look.on_dark` says, what lies between them stays in between: its lightness L becomes a
 # broken line through (1, paper), (:data:`INK`, 1.16 - 0.8 INK) and (0, 1.16).
 #
 # Source: W3C, Graphics Interchange Format, version 89a.

@@ -17,7 +17,7 @@ from typing import Any, NoReturn
 
 import msgspec
 
-from mbsd.dealing.wrong_answer import WrongAnswer, printable
+from mbsd.dealing.report import WrongAnswer, printable
 from mechanisms.stages.loading.inputs import Inputs
 from shared.contract import PARTS_UNITS, Parts, consistency
 from shared.stage import jsonfile

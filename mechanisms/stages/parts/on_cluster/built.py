@@ -24,9 +24,9 @@ from mechanisms.stages.loading.loading import package_of
 from mechanisms.stages.parts.on_cluster.answer import WorkerParts
 from shared.cluster.deal import content_hash
 from shared.cluster.preload import PARTS, sources_of
-from shared.stage import files, paths, signals
+from shared.stage import paths, signals
 from shared.stage.errors import UserError
-from shared.stage.files import write_bytes
+from shared.stage.files import is_abandoned, try_lock, write_bytes
 from shared.stage.paths import ROOT, SOLVER, out_root
 from shared.stage.scale import scale_of
 
@@ -69,7 +69,7 @@ def _scratch(place: Path) -> Iterator[Path]:
     with tempfile.TemporaryDirectory(prefix="made-", dir=place, ignore_cleanup_errors=True) as folder:
         new = Path(folder) / "new"
         with new.open("wb") as lock:
-            files.try_lock(lock.fileno())
+            try_lock(lock.fileno())
             new.rename(Path(folder) / LOCK)
             yield Path(folder) / "tree"
 
@@ -138,7 +138,7 @@ def _remove_leftovers(place: Path) -> None:
         with suppress(OSError):
             lock = left / LOCK
             old = time.time() - left.stat().st_mtime > BEGUN
-            if files.is_abandoned(lock) if lock.exists() else old:
+            if is_abandoned(lock) if lock.exists() else old:
                 shutil.rmtree(left, ignore_errors=True)
 
 

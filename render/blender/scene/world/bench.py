@@ -39,20 +39,20 @@ class Thing:
         scene.collection.objects.link(self.root)
 
     def box(self, low: Corner, high: Corner, paint: Any, bevel: float = 0.008) -> None:
-        """An upright box between two corners."""
+        """Add an upright box between two corners."""
         (x0, y0, z0), (x1, y1, z1) = low, high
         self.outline([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], z0, z1, paint, bevel)
 
     def outline(self, around: Sequence[tuple[float, float]], low: float, high: float, paint: Any, bevel: float) -> None:
-        """A prism over a counter-clockwise outline (x, y), from ``low`` to ``high``."""
+        """Add a prism over a counter-clockwise outline (x, y), from ``low`` to ``high``."""
         self._solid([[(x, y, z) for x, y in around] for z in (low, high)], paint, bevel)
 
     def hung(self, around: Sequence[tuple[float, float]], front: float, back: float, paint: Any, bevel: float) -> None:
-        """A prism over an outline (x, z), from ``front`` to ``back`` in y."""
+        """Add a prism over an outline (x, z), from ``front`` to ``back`` in y."""
         self._solid([[(x, y, z) for x, z in around] for y in (back, front)], paint, bevel)
 
     def rod(self, start: Corner, end: Corner, widths: Sequence[tuple[float, float]], paint: Any) -> None:
-        """A turned rod; ``widths`` are (part of its length, radius) from start to end."""
+        """Add a turned rod; ``widths`` are (part of its length, radius) from start to end."""
         first, axis = np.array(start), np.array(end) - np.array(start)
         along = axis / np.linalg.norm(axis)
         across = np.cross(along, np.eye(3)[np.abs(along).argmin()])
@@ -66,7 +66,7 @@ class Thing:
         self._solid(rings, paint, 0.0)
 
     def _solid(self, rings: Sequence[Sequence[Any]], paint: Any, bevel: float) -> None:
-        """Rings of as many corners each, closed at both ends."""
+        """Add rings of as many corners each, closed at both ends."""
         import bpy
 
         count = len(rings[0])
@@ -99,7 +99,7 @@ VICE_LIGHT = 0.04
 
 
 def build_vice(thing: Thing, lamps: Sequence[Lamp], scale: float = 1.0) -> None:
-    """On the floor at the origin of ``thing``, its screw towards -y; about 0.5 wide and 0.45 high at scale 1.
+    """Build a vice on the floor at the origin of ``thing``, its screw towards -y; 0.5 wide, 0.45 high at scale 1.
 
     ``lamps`` are in the axes of ``thing``; their light is painted on it (lights.py).
     """
@@ -184,7 +184,7 @@ def build_pegboard(
 
 
 def _board(colour: Colour, radius: float, bounce: float) -> Any:
-    """Painted hardboard; its holes are black."""
+    """Return painted hardboard; its holes are black."""
     made, graph = new_material("pegboard")
     made.cycles.emission_sampling = "NONE"
     place = graph.add("TexCoord").outputs["Object"]
@@ -203,7 +203,7 @@ def _board(colour: Colour, radius: float, bounce: float) -> Any:
 
 
 def _paint(colour: Colour) -> Any:
-    """Mat paint: what runs along the whole wall meets most of the light that bounces, so it mirrors nothing."""
+    """Return matt paint that mirrors nothing, since the whole wall meets most of the light that bounces."""
     made, graph = new_material("batten")
     graph.add("OutputMaterial", Surface=graph.add("BsdfDiffuse", Color=colour).outputs[0])
     return made

@@ -94,7 +94,7 @@ def _painted(graph: Graph, ground: Ground, place: Any) -> Any:
 
 
 def _wood(graph: Graph, ground: Ground, place: Any) -> Any:
-    """Boards across the picture, each of another tone, with the fibres of its own piece of the tree."""
+    """Return boards across the picture, each with its own tone and fibres."""
     split = graph.add("SeparateXYZ", Vector=place)
     across = graph.math("MULTIPLY_ADD", split.outputs["Y"], 1 / BOARD, 0.23 / BOARD)
     row = graph.math("FLOOR", across)
@@ -120,7 +120,7 @@ def _wood(graph: Graph, ground: Ground, place: Any) -> Any:
 
 
 def _concrete(graph: Graph, ground: Ground, place: Any) -> Any:
-    """Trowelled: slow clouds and a fine grain."""
+    """Return trowelled concrete: slow clouds and a fine grain."""
     clouds = _noise(graph, place, 1.1, 2.0)
     grain = _noise(graph, place, 38.0, 1.0)
     part = graph.math("ADD", graph.math("MULTIPLY", clouds, 0.75), graph.math("MULTIPLY", grain, 0.25))
@@ -129,7 +129,7 @@ def _concrete(graph: Graph, ground: Ground, place: Any) -> Any:
 
 
 def _asphalt(graph: Graph, ground: Ground, place: Any) -> Any:
-    """Stones in tar, and the lines of a lane along x."""
+    """Return stones in tar, and the lines of a lane along x."""
     stones = graph.add("TexVoronoi", {"voronoi_dimensions": "2D"}, Vector=place, Scale=90.0).outputs["Distance"]
     clouds = _noise(graph, place, 0.7, 1.0)
     part = graph.math("ADD", graph.math("MULTIPLY", stones, 0.9), graph.math("MULTIPLY", clouds, 0.45))
@@ -156,7 +156,7 @@ def _lined(graph: Graph, colour: Any, line: Colour, place: Any, worn: Any) -> An
 
 
 def _sand(graph: Graph, ground: Ground, place: Any) -> Any:
-    """Ripples of the wind, and grains."""
+    """Return sand with ripples of the wind, and grains."""
     bent = _noise(graph, place, 0.8, 1.0)
     split = graph.add("SeparateXYZ", Vector=place)
     phase = graph.math(

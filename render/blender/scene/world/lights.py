@@ -218,7 +218,7 @@ def _window(scene: Any, studio: StudioSpec, toward: Any) -> Any:
 
 
 def _fade_to_rim(light: Any) -> None:
-    """Bright along its lower edge, gone at its upper: level faces far off catch more of it than near ones."""
+    """Fade from a bright lower edge to nothing at the upper: far level faces catch more of it than near ones."""
     light.use_nodes = True
     graph = Graph(light.node_tree).clear()
     across = graph.add("SeparateXYZ", Vector=graph.add("NewGeometry").outputs["Parametric"])

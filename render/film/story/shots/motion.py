@@ -65,7 +65,7 @@ def _lively(scenery: Scenery, start: float, end: float, seconds: float) -> Warp:
 
 
 def _shot(scenery: Scenery, passes: Ramp | Warp, seconds: float, again: float = 0.0) -> Shot:
-    """``again``: after so many seconds a motion that ends begins anew."""
+    """Return the shot of the motion; ``again``: seconds after which a motion that ends begins anew."""
     side = SWING if scenery.turning else 0.0
     first, last = (scenery.stand(azimuth) for azimuth in (-side, side))
 

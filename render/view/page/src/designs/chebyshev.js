@@ -2,7 +2,8 @@
 
 /** What each node counts at x; the sum is 1. @param {number} x  @param {number[]} nodes  @returns {Float64Array} */
 export function weights(x, nodes) {
-  const out = new Float64Array(nodes.length), hit = nodes.indexOf(x), last = nodes.length - 1;
+  const out = new Float64Array(nodes.length), last = nodes.length - 1, near = 1e-14 * Math.abs(nodes[last] - nodes[0]);
+  const hit = nodes.findIndex((node) => Math.abs(x - node) <= near);  // nearer, the quotients overflow
   if (hit >= 0) {
     out[hit] = 1;
     return out;

@@ -1,5 +1,5 @@
 /** What is under a pixel of the 2D view: a joint or traced point before a body. */
-import { moved } from "./carriers.js";
+import { moved } from "carriers";
 
 const NEAR = 16;
 /** Pixels. */

@@ -3,7 +3,7 @@ import { Motion } from "../data/motion.js";
 import { same } from "../state.js";
 import { pen } from "../ui/canvases.js";
 import { arcsAt, arrowsAt, drawArrows } from "./arrows.js";
-import { moved } from "./carriers.js";
+import { moved } from "carriers";
 import { drawGrid } from "./grid.js";
 import { inks, showsArrows } from "./inks.js";
 import { writeNames } from "./names.js";

@@ -1,1 +1,0 @@
-"""One picture of the film: the page, its panels, arrows at their scale, names, trails."""

@@ -1,1 +1,0 @@
-"""The topology of a mechanism as SVG: its graph, laid out."""

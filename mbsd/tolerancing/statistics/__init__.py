@@ -1,1 +1,0 @@
-"""Statistics of results: derivatives, chance, worst cases, shares of the variance, yields."""

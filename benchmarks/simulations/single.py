@@ -13,6 +13,7 @@ import importlib.util
 import itertools
 import math
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -271,6 +272,64 @@ def mujoco(problem: Problem) -> Iterator[Case]:
         yield Case("mujoco", f"implicitfast, {steps} steps, stiffness {stiffness:g}", fresh, outputs)
 
 
+def _exudyn_system(exu: Any, u: Any, problem: Problem, stiffness: float) -> tuple[Any, Any]:
+    """Return a system of Exudyn and the nodes of its bodies."""
+    system = exu.SystemContainer().AddSystem()
+    ground = system.AddMarker(u.MarkerNodeCoordinate(nodeNumber=system.AddNode(u.NodePointGround()), coordinate=0))
+    places = {BALL: [HEIGHT], CRADLE: _places()}.get(problem.name, [0.0])
+    speed = {BALL: 0.0, BELT: SPEED, STOP: THROWN, CRADLE: ROLLED}[problem.name]
+
+    def mass(x: float, speed: float, size: float = 1.0) -> tuple[Any, Any]:
+        node = system.AddNode(u.Node1D(referenceCoordinates=[0.0], initialCoordinates=[x], initialVelocities=[speed]))
+        system.AddObject(u.Mass1D(mass=size, nodeNumber=node))
+        return node, system.AddMarker(u.MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
+
+    nodes, markers = zip(*(mass(x, 0.0 if k else speed) for k, x in enumerate(places)), strict=True)
+
+    def touch(first: Any, second: Any, gap: float, mass: float) -> None:
+        contact = u.ObjectContactCoordinate(
+            markerNumbers=[first, second], contactStiffness=stiffness, offset=gap,
+            contactDamping=2 * damping("exudyn", problem, pulls=True) * math.sqrt(stiffness * mass),
+            nodeNumber=system.AddNode(u.NodeGenericData(initialCoordinates=[1.0], numberOfDataCoordinates=1)),
+        )  # fmt: skip
+        system.AddObject(contact)
+
+    def rub(other: Any, sliding: float, **more: Any) -> None:
+        data = u.NodeGenericData(initialCoordinates=[0, 0, 0], numberOfDataCoordinates=3)
+        friction = u.CoordinateSpringDamperExt(
+            markerNumbers=[other, markers[0]],
+            nodeNumber=system.AddNode(data),
+            dynamicFrictionForce=sliding,
+            **more,
+        )
+        system.AddObject(friction)
+
+    if problem.name == BALL:
+        system.AddLoad(u.LoadCoordinate(markerNumber=markers[0], load=-GRAVITY))
+        touch(ground, markers[0], 0.0, 1.0)
+    elif problem.name == BELT:
+        spring = u.CoordinateSpringDamper(markerNumbers=[ground, markers[0]], stiffness=STIFF)
+        system.AddObject(spring)
+        sticks = {"stickingStiffness": stiffness, "stickingDamping": 2 * math.sqrt(stiffness)}
+        above = (STATIC - SLIDING) * GRAVITY
+        rub(
+            mass(0.0, SPEED, HEAVY)[1],
+            SLIDING * GRAVITY,
+            staticFrictionOffsetForce=above,
+            exponentialDecayStatic=1e-4,
+            **sticks,
+        )
+    elif problem.name == STOP:
+        touch(markers[0], ground, -WAY, 1.0)
+        rub(ground, RUB * GRAVITY, frictionProportionalZone=1e-3)
+    else:
+        touch(ground, markers[0], -GAP, 1.0)
+        touch(markers[-1], ground, -(_places()[-1] + GAP), 1.0)
+        for first, second in itertools.pairwise(markers):
+            touch(first, second, 2 * RADIUS, 0.5)
+    return system, nodes
+
+
 def exudyn(problem: Problem) -> Iterator[Case]:
     """One coordinate for each body, contacts of coordinates, bristles for friction."""
     exu, u = importlib.import_module("exudyn"), importlib.import_module("exudyn.utilities")
@@ -284,65 +343,7 @@ def exudyn(problem: Problem) -> Iterator[Case]:
         settings.timeIntegration.numberOfSteps = steps
         settings.timeIntegration.verboseMode = 0
 
-        def build_system(problem: Problem = problem, stiffness: float = stiffness) -> tuple[Any, Any]:
-            system = exu.SystemContainer().AddSystem()
-            ground = system.AddMarker(
-                u.MarkerNodeCoordinate(nodeNumber=system.AddNode(u.NodePointGround()), coordinate=0)
-            )
-            places = {BALL: [HEIGHT], CRADLE: _places()}.get(problem.name, [0.0])
-            speed = {BALL: 0.0, BELT: SPEED, STOP: THROWN, CRADLE: ROLLED}[problem.name]
-
-            def mass(x: float, speed: float, size: float = 1.0) -> tuple[Any, Any]:
-                node = system.AddNode(
-                    u.Node1D(referenceCoordinates=[0.0], initialCoordinates=[x], initialVelocities=[speed])
-                )
-                system.AddObject(u.Mass1D(mass=size, nodeNumber=node))
-                return node, system.AddMarker(u.MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
-
-            nodes, markers = zip(*(mass(x, 0.0 if k else speed) for k, x in enumerate(places)), strict=True)
-
-            def touch(first: Any, second: Any, gap: float, mass: float) -> None:
-                contact = u.ObjectContactCoordinate(
-                    markerNumbers=[first, second], contactStiffness=stiffness, offset=gap,
-                    contactDamping=2 * damping("exudyn", problem, pulls=True) * math.sqrt(stiffness * mass),
-                    nodeNumber=system.AddNode(u.NodeGenericData(initialCoordinates=[1.0], numberOfDataCoordinates=1)),
-                )  # fmt: skip
-                system.AddObject(contact)
-
-            def rub(other: Any, sliding: float, **more: Any) -> None:
-                data = u.NodeGenericData(initialCoordinates=[0, 0, 0], numberOfDataCoordinates=3)
-                friction = u.CoordinateSpringDamperExt(
-                    markerNumbers=[other, markers[0]],
-                    nodeNumber=system.AddNode(data),
-                    dynamicFrictionForce=sliding,
-                    **more,
-                )
-                system.AddObject(friction)
-
-            if problem.name == BALL:
-                system.AddLoad(u.LoadCoordinate(markerNumber=markers[0], load=-GRAVITY))
-                touch(ground, markers[0], 0.0, 1.0)
-            elif problem.name == BELT:
-                spring = u.CoordinateSpringDamper(markerNumbers=[ground, markers[0]], stiffness=STIFF)
-                system.AddObject(spring)
-                sticks = {"stickingStiffness": stiffness, "stickingDamping": 2 * math.sqrt(stiffness)}
-                above = (STATIC - SLIDING) * GRAVITY
-                rub(
-                    mass(0.0, SPEED, HEAVY)[1],
-                    SLIDING * GRAVITY,
-                    staticFrictionOffsetForce=above,
-                    exponentialDecayStatic=1e-4,
-                    **sticks,
-                )
-            elif problem.name == STOP:
-                touch(markers[0], ground, -WAY, 1.0)
-                rub(ground, RUB * GRAVITY, frictionProportionalZone=1e-3)
-            else:
-                touch(ground, markers[0], -GAP, 1.0)
-                touch(markers[-1], ground, -(_places()[-1] + GAP), 1.0)
-                for first, second in itertools.pairwise(markers):
-                    touch(first, second, 2 * RADIUS, 0.5)
-            return system, nodes
+        build_system = partial(_exudyn_system, exu, u, problem, stiffness)
 
         def fresh(settings: Any = settings, build: Callable[[], Any] = build_system) -> Run:
             system, _ = build()

@@ -8,8 +8,7 @@ is the cubic through both with their rates, and the approach is its slope where 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from itertools import pairwise
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numba
@@ -25,7 +24,7 @@ from mbsd.equations.interactions.law import RESULTS, STATE, address_of, switches
 from mbsd.equations.interactions.switching import APPROACHED, REMEMBERS, SIZE, SPEED_HERE, SWITCHING, VALUE, WIDTH
 from mbsd.equations.joint_friction import BY_RATE, GUIDE, PIN
 from mbsd.equations.laws import Laws
-from mbsd.equations.loads import Loads, tabulate_loads
+from mbsd.equations.loads import Loads, remembers, stretches, tabulate_loads
 
 if TYPE_CHECKING:
     from mbsd.arrays.directory import ForceRows
@@ -174,30 +173,6 @@ def _timed(law: Callable) -> Callable:
         return law(value, rate)
 
     return _TIMED.get(law, lambda: numba.njit(timed)) if isinstance(law, Dispatcher) else timed
-
-
-def remembers(loads: Loads) -> bool:
-    """Return True if any contact asks for the speed at which it began."""
-    return bool(loads.switch[0, REMEMBERS])
-
-
-def stretches(loads: Loads, approached: np.ndarray | None, count: int) -> Iterator[slice]:
-    """Yield stretches of rows 0 .. ``count`` with equal approach (T, n) (m/s), set in ``loads`` meanwhile.
-
-    With None it stays as it is.
-    """
-    if approached is None or not remembers(loads):
-        yield slice(0, count)
-        return
-    own = loads.switch[1:, APPROACHED].copy()
-    same = (approached[1:] == approached[:-1]) | (np.isnan(approached[1:]) & np.isnan(approached[:-1]))
-    edges = [0, *(np.flatnonzero(~same.all(axis=1)) + 1).tolist(), count]
-    try:
-        for first, last in pairwise(edges):
-            loads.switch[1:, APPROACHED] = approached[first]
-            yield slice(first, last)
-    finally:
-        loads.switch[1:, APPROACHED] = own
 
 
 def approached_along(

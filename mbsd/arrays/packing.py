@@ -64,13 +64,13 @@ def arrays_of(parts: Parts, specials: Specials, forces: int) -> Arrays:
     """Return arrays whose scratch is the caller's own; the others are shared."""
     numbers = np.array(parts.numbers, float)
     if specials.names or 3 * (parts.bodies - 1) > MOST_KEPT:
-        return _made(parts, numbers, specials, forces)
+        return _build_arrays(parts, numbers, specials, forces)
     own = parts.bodies, parts.marker_body, parts.offsets, parts.lengths, parts.first_row, parts.tables, forces
-    kept = _ARRAYS.get((numbers.tobytes(), *own), lambda: _made(parts, numbers, specials, forces))
+    kept = _ARRAYS.get((numbers.tobytes(), *own), lambda: _build_arrays(parts, numbers, specials, forces))
     return kept._replace(ws=Workspace(*[part.copy() for part in kept.ws]))
 
 
-def _made(parts: Parts, numbers: np.ndarray, specials: Specials, forces: int) -> Arrays:
+def _build_arrays(parts: Parts, numbers: np.ndarray, specials: Specials, forces: int) -> Arrays:
     body_end = 2 + 4 * parts.bodies
     marker_end = body_end + 3 * len(parts.marker_body)
     body = numbers[2:body_end].reshape(-1, 4)

@@ -196,13 +196,13 @@ class KernelContext(CPUContext):
         """Make a kernel known, so that whoever calls it hands arrays over as kernels do."""
         call: Any = user_function(fndesc, libs)
 
-        def through(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        def call_ours(context: Any, builder: Any, signature: Any, values: Any) -> Any:
             if context.data_model_manager is MODELS:
                 return call(context, builder, signature, values)
             ours = [self._taken_over(builder, *given) for given in zip(signature.args, values, strict=True)]
             return call(self, builder, signature, ours)
 
-        called: Any = through
+        called: Any = call_ours
         called.signature, called.libs = call.signature, call.libs
         self._defns[func].append(called, called.signature)
 

@@ -269,7 +269,7 @@ class _Results(CompileResultCacheImpl):
             for module, function, arguments, returns in cells
         ]
         for name, (module, function, arguments) in called.items():
-            calls[name] = Apart(name, _at(module, function), arguments)
+            calls[name] = Apart(name, _kernel_named(module, function), arguments)
             if calls[name].library is None:
                 return None
         cres = super().rebuild(target_context, own)
@@ -283,7 +283,7 @@ def _place(dispatcher: Any) -> tuple[str, str]:
     return dispatcher.py_func.__module__, dispatcher.py_func.__qualname__
 
 
-def _at(module: str, function: str) -> Any:
+def _kernel_named(module: str, function: str) -> Any:
     """Return the kernel at the module and name that ``_place`` gives."""
     return getattr(importlib.import_module(module), function)
 

@@ -143,7 +143,7 @@ class SimulationTangents:
         def finish() -> Tangents | None:
             out = self._recorded()
             if asked is None:
-                self._take(out.solve(), needed)
+                self._keep_simulation(out.solve(), needed)
                 along = replace(self.along, held=np.ones(self.along.lam.shape, bool))
                 rows, compact = self.stretch_rows(along, 0), self.terms.rows(along)[2]
                 self._variants = variants_beside(self.variation, self._numbers, both.near)
@@ -167,12 +167,12 @@ class SimulationTangents:
         whole = between(self._first, np.union1d(nodes, self._grid))
         rows = self._outputs(whole, self._grid)
         needed = self._needed(self._grid)
-        made, errors = self._made(whole, rows[needed], nodes)
+        made, errors = self._tangents_at(whole, rows[needed], nodes)
         if self._off > CLOSE:
             raise NotSmooth
 
         def finish() -> Tangents:
-            self._take(self._recorded().solve(), needed)
+            self._keep_simulation(self._recorded().solve(), needed)
             return made
 
         return errors, finish
@@ -183,11 +183,11 @@ class SimulationTangents:
         whole = motion_of(self._runs(np.union1d(nodes, apart(grid, self._met, self.span[1] - self.span[0]))))
         rows = self._outputs(whole, grid)
         needed = self._needed(whole.t[rows])
-        made, errors = self._made(whole, rows[needed], nodes)
+        made, errors = self._tangents_at(whole, rows[needed], nodes)
 
         def finish() -> Tangents:
             assert whole.solution is not None
-            self._take(rows_of(unwatched(whole.solution, self.m), rows), needed)
+            self._keep_simulation(rows_of(unwatched(whole.solution, self.m), rows), needed)
             if self.repeated:
                 made.lam[:] = np.nan  # joints that repeat others share their loads in many ways
             if needed[-1] < len(rows) - 1:
@@ -203,7 +203,7 @@ class SimulationTangents:
         """The motion that was looked at, at all outputs."""
         return self._runs.recorded(np.searchsorted(self._first.t, self._grid))
 
-    def _take(self, sol: Solution, needed: np.ndarray) -> None:
+    def _keep_simulation(self, sol: Solution, needed: np.ndarray) -> None:
         """Keep the simulation at all outputs, and at those of which tangents are asked."""
         self.t, self.solve = sol.t, lambda: sol
         self.known = sol if len(needed) == len(sol.t) else rows_of(sol, needed)
@@ -232,7 +232,7 @@ class SimulationTangents:
 
     # -- nodes -----------------------------------------------------------------------------------------------------
 
-    def _made(self, whole: Motion, rows: np.ndarray, nodes: np.ndarray) -> tuple[Tangents, np.ndarray]:
+    def _tangents_at(self, whole: Motion, rows: np.ndarray, nodes: np.ndarray) -> tuple[Tangents, np.ndarray]:
         """Tangents at some rows of the simulation, and the error that each step between nodes adds."""
         asked, known = np.zeros(len(whole.t), bool), np.isin(whole.t, nodes)
         asked[rows] = True

@@ -89,7 +89,7 @@ def with_efforts_beside(
         if looked[row] or not own < CLOSE * usual:
             continue
         looked |= np.abs(solution.t - solution.t[row]) <= NEAR * _pace(ready, solution, row)
-        for known in _beside(ready, solution, motion, span, row):
+        for known in _poses_beside(ready, solution, motion, span, row):
             side, there = known.side, known.motion
             beside.append(known)
             rows = np.searchsorted(solution.t, side.rows)
@@ -111,7 +111,7 @@ def with_efforts_beside(
     return replace(solution, q=q, v=v, a=a, lam=lam, wrench=wrench, margin=margin, beside=tuple(beside))
 
 
-def _beside(
+def _poses_beside(
     ready: PreparedDynamics, solution: Solution, motion: Motion, span: tuple[float, float], row: int
 ) -> list[Beside]:
     """Poses beside the change point near output ``row``, D there and at the outputs near it, and the motion there."""

@@ -11,17 +11,19 @@ after it with new derivatives, as at jumps of laws (prepare/stops.py).
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from mbsd.arrays.packing import Packed
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import inlined, internal, kernel, lazy
 from mbsd.dynamics.independent.arrays import Embedding, EmbeddingScratch
 from mbsd.dynamics.independent.equations import write_alone
 from mbsd.dynamics.integrators.advance import USUAL, advance_past_jumps, copy_state
 from mbsd.dynamics.state import ACCEPTED, ERROR, NEXT, PAUSED, REACHED, STARTED, STEP, TIME, WORK, State, output_for
+
+if TYPE_CHECKING:
+    from mbsd.arrays.packing import Packed
 
 CRANK, WHEEL = range(2)
 """Columns of Genevas.body."""

@@ -107,7 +107,7 @@ def _find_products(dyn, scratch, repeated, t, q):
 
 
 @internal
-def _take(repeated, order, n, i):
+def _add_row(repeated, order, n, i):
     """Make row i the n-th of the factor; returns False where it follows from those before."""
     gram = repeated.gram
     factor = repeated.factor
@@ -199,7 +199,7 @@ def _exchange(dyn, scratch, repeated, t, q):
     independent = True
     for i in range(rows):
         if number[i, HELD] > 0.0:
-            independent = independent and _take(repeated, repeated.order[0], count, i)
+            independent = independent and _add_row(repeated, repeated.order[0], count, i)
             count += 1
     least = _least(repeated, count) if independent else 0.0
     if not _choose(repeated, count) or not _least(repeated, count) > repeated.clock[BETTER] ** 2 * least:

@@ -269,16 +269,16 @@ def simulated(
     asked = ready.stops.jumps.among(grid) if event_rows and ready.stops.jumps else None
     recording = follow(run, grid if asked is None else asked.solved, events, event_rows, progress)
 
-    def at(times: np.ndarray) -> Solution:
+    def solve_between(times: np.ndarray) -> Solution:
         try:
             sol = solution(m, ready, resumed(run, recording, times, events))
         except SimulationError:
             if clear.all():
                 raise
-            sol = beside(times)
-        return with_efforts_beside(ready, sol, near_singular(sol), beside, span)
+            sol = solve_at(times)
+        return with_efforts_beside(ready, sol, near_singular(sol), solve_at, span)
 
-    def beside(times: np.ndarray) -> Solution:
+    def solve_at(times: np.ndarray) -> Solution:
         return solution(m, ready, resumed(run, recording.only(clear), times, events, True))
 
     refuse_impossible(ready.packed, recording.out.t, recording.out.y)
@@ -289,10 +289,10 @@ def simulated(
         simulate, m, None, 1, grid, method, tolerance, step, None, request.options, event_rows, request.formulation
     )
     span = float(recording.out.t[0]), float(recording.out.t[-1])
-    sol = solution(m, ready, recording, Between(at, anew, recording.out.y[-1, 0]))
+    sol = solution(m, ready, recording, Between(solve_between, anew, recording.out.y[-1, 0]))
     is_near = near_singular(sol)
     clear = ~is_near
-    sol = with_efforts_beside(ready, sol, is_near, beside, span)
+    sol = with_efforts_beside(ready, sol, is_near, solve_at, span)
     return sol if asked is None else asked.rows(sol)
 
 

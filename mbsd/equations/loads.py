@@ -7,12 +7,17 @@ are called by the address of a function, so that nobody compiles what his model 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from mbsd.base.codes import AXIS, CONSTANT, DAMPING, DRY, LAW_RATE, LAW_TIME, LINE, LINEAR, POWER, PUSH, TURN
 from mbsd.compiling.callback import call
 from mbsd.compiling.jit import inlined, kernel, lazy
 from mbsd.equations.interactions.evaluation import apply_interactions
+from mbsd.equations.interactions.switching import APPROACHED, REMEMBERS
 from mbsd.equations.laws import law_at
 from mbsd.equations.system import place
 
@@ -244,3 +249,27 @@ def apply_user_forces(user, user_body, user_com, exchange, t, q, v, cos_sin, loa
             load[3 * b + 2] += out[3 * n + 2] + x * fy - y * fx
             power += fx * given[rate] + fy * given[rate + 1] + out[3 * n + 2] * given[rate + 2]
     return power
+
+
+def remembers(loads: Loads) -> bool:
+    """Return True if any contact asks for the speed at which it began."""
+    return bool(loads.switch[0, REMEMBERS])
+
+
+def stretches(loads: Loads, approached: np.ndarray | None, count: int) -> Iterator[slice]:
+    """Yield stretches of rows 0 .. ``count`` with equal approach (T, n) (m/s), set in ``loads`` meanwhile.
+
+    With None it stays as it is.
+    """
+    if approached is None or not remembers(loads):
+        yield slice(0, count)
+        return
+    own = loads.switch[1:, APPROACHED].copy()
+    same = (approached[1:] == approached[:-1]) | (np.isnan(approached[1:]) & np.isnan(approached[:-1]))
+    edges = [0, *(np.flatnonzero(~same.all(axis=1)) + 1).tolist(), count]
+    try:
+        for first, last in pairwise(edges):
+            loads.switch[1:, APPROACHED] = approached[first]
+            yield slice(first, last)
+    finally:
+        loads.switch[1:, APPROACHED] = own

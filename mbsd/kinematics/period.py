@@ -118,10 +118,10 @@ def _holds(law: object) -> bool:
 
 
 def _ends(q: np.ndarray, v: np.ndarray, a: np.ndarray, i: int, j: int) -> Ends:
-    def at(k: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def row_of(k: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         return q[k].reshape(-1, 3), v[k].reshape(-1, 3), a[k].reshape(-1, 3)
 
-    return at(i), at(j)
+    return row_of(i), row_of(j)
 
 
 def _least_turns(ends: Ends) -> int | None:

@@ -22,12 +22,12 @@ import numpy as np
 
 from mbsd.arrays.directory import directory, slice_of
 from mbsd.arrays.laws import compiled_laws
-from mbsd.arrays.loads import pack_loads, stretches
+from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import marker_axes, marker_places, relative_velocity
 from mbsd.arrays.states import own_states, widened, with_states
 from mbsd.base.codes import AXIS, LAW_VALUE, LINE, LINEAR, POTENTIAL_TERMS, POWER, PUSH, TURN
-from mbsd.equations.loads import tabulate_loads
+from mbsd.equations.loads import stretches, tabulate_loads
 from mbsd.model.force import Element, Force, Term
 from mbsd.model.laws.curve import Curve
 from mbsd.results.fluids import gas_view, hydraulic_view

@@ -99,11 +99,11 @@ def tolerances(
     """
     options = {"n": n, "seed": seed, "duration": duration, "steps": steps, "way": way, "sobol": sobol}
     options |= {"corners": corners, "confidence": confidence, "threads": threads, "progress": progress}
-    return asked(machine, sizes, result, limits, **options)()
+    return request_of(machine, sizes, result, limits, **options)()
 
 
 @checked
-def asked(
+def request_of(
     machine: Any,
     sizes: Any,
     result: Any = None,

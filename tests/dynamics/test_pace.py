@@ -133,27 +133,27 @@ def test_ctrl_c_ends_a_run_at_once(extra: str, options: str) -> None:
 
 
 def test_steps_that_creep_towards_a_change_point_end_with_its_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two parallelograms in a row of which one is not quite exact: no coordinates are clear where both are flat."""
-    m = Mechanism("row")
-    rods = [m.bar(f"rod{k}", 1.0, mass=1.0) for k in range(3)]
+    """Parallelograms in a row of which one is not quite exact: reference coordinates do not pass where all are flat."""
+    m, length = Mechanism("row"), 1.3
+    rods = [m.bar(f"rod{k}", length, mass=1.0) for k in range(4)]
     for k, rod in enumerate(rods):
-        m.revolute(f"foot{k}", m.ground.at(k, 0), rod.start)
-    for k, length in ((1, 1.001), (2, 1.0)):
+        m.revolute(f"foot{k}", m.ground.at(k * length, 0), rod.start)
+    for k, more in ((1, 0.0), (2, 0.001), (3, 0.0)):
         deck = m.bar(f"deck{k}", length, mass=1.0)
         m.revolute(f"left{k}", rods[k - 1].end, deck.start)
-        m.revolute(f"right{k}", deck.end, rods[k].end)
-    m.start_near(rod0=60, rod1=60, rod2=60, deck1=0, deck2=0)
-    m.start_moving(rod0=-1.7)
+        m.revolute(f"right{k}", deck.at(length + more, 0.0), rods[k].end)
+    m.start_near(rod0=113, rod1=113, rod2=113, rod3=113, deck1=0, deck2=0, deck3=0)
+    m.start_moving(rod0=0.48)
     calls, original = [], motion.advance
 
     def advance(*given: Any) -> int:
         calls.append(given)
-        assert len(calls) < 1000, "it creeps for ever"
+        assert len(calls) < 5000, "it creeps for ever"
         return original(*given)
 
     monkeypatch.setattr(motion, "advance", advance)
-    with pytest.raises(SimulationError, match=r"no longer advances at t = 0\.34.* Look for a pose that is singular"):
-        m.simulate(1.0, steps=12, tolerance=1e-9)
+    with pytest.raises(SimulationError, match=r"no longer advances at t = 0\.\d+ s.* Look for a pose that is singular"):
+        m.simulate(1.34, steps=60, tolerance=1e-10, formulation="reference")
 
 
 def pushed(torque, mass: float = 1.0) -> Mechanism:

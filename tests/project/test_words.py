@@ -20,13 +20,13 @@ LONG = 100
 """Letters that the first line of a docstring may have."""
 AIM = 3.0, 3.0
 CEILINGS = {
-    "mbsd": (3.0, 14.0, 87),
-    "mechanisms": (3.0, 25.5, 1),
-    "render": (3.0, 27.0, 0),
+    "mbsd": (3.0, 12.4, 40),
+    "mechanisms": (3.0, 25.0, 1),
+    "render": (3.0, 26.4, 0),
     "shared": (3.0, 3.0, 0),
-    "studio": (3.0, 3.0, 1),
+    "studio": (3.0, 3.0, 0),
     "tools": (3.0, 14.1, 0),
-    "benchmarks": (3.0, 20.5, 0),
+    "benchmarks": (3.0, 20.3, 0),
 }
 """By room: per cent of docstrings that begin oddly, per cent with a long first line, BANNED names that are left."""
 BANNED = {"made", "done", "beside", "through", "asked", "bare", "of", "at", "put", "take"}

@@ -30,7 +30,8 @@ def group_of(nodeid: str) -> str:
     """Tests of one group run in one process, as they share what a fixture made: those of a folder, else of a file."""
     file, _, test = nodeid.partition("::")
     if file.endswith(FOLDERS) and "[" in test:
-        return f"{file}[{test.rpartition('[')[2]}"
+        folder = test.rpartition("[")[2].rstrip("]").partition("-")[0]  # a variant is solved in its folder's group
+        return f"{file}[{folder}]"
     return file
 
 

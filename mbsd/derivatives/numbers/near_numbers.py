@@ -94,12 +94,12 @@ class NearNumbers:
         step = step_of(NEAR, size)
         for away in (step, -step):
             try:
-                return self._at(number, size, away)
+                return self._slopes(number, size, away)
             except (ModelError, AssemblyError):
                 continue
         return None
 
-    def _at(self, number: Number, size: float, away: float) -> Near | None:
+    def _slopes(self, number: Number, size: float, away: float) -> Near | None:
         own, first = self.variation, self.variation.first
         value = number.value + away
         away = value - number.value  # as far as the number itself has so many digits

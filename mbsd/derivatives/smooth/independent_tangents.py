@@ -198,17 +198,17 @@ class IndependentTangents:
 
     def _slope(self, p: int, here: States, rates: np.ndarray, room: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
         """(T, f) how z'' changes with number p at held states, where it is ``rates`` (T, f); ``room`` is scratch."""
-        last, self.alone[p] = self._beside(p, -1, here, *room)
+        last, self.alone[p] = self._held_side(p, -1, here, *room)
         if self.alone[p] > ALLOWED * FAR:
             self.both.set_steps({p: TINY * FAR / float(self.alone[p])})
-            last, self.alone[p] = self._beside(p, -1, here, *room)
+            last, self.alone[p] = self._held_side(p, -1, here, *room)
         sides, out = self.every[p], last
         out *= sides.weights[-1]
         for k, weight in enumerate(sides.weights[:-1].tolist()):
-            out += weight * (self._beside(p, k, here, *room)[0] if sides.away[k] else rates)
+            out += weight * (self._held_side(p, k, here, *room)[0] if sides.away[k] else rates)
         return out
 
-    def _beside(self, p: int, k: int, here: States, poses: np.ndarray, a: np.ndarray) -> tuple[np.ndarray, float]:
+    def _held_side(self, p: int, k: int, here: States, poses: np.ndarray, a: np.ndarray) -> tuple[np.ndarray, float]:
         """(T, f) z'' on side k of number p at held states, and how far bodies go there (sizes, rad)."""
         sides = self.every[p]
         self._move(sides.arrays[k], sides.mass[k], sides.moment[k], here, True, poses, a)

@@ -117,6 +117,20 @@ def still_open(dyn, passed, y, since, count, unmet):
     return unmet
 
 
+@internal
+def _begin_or_take_up(dyn, scratch, state, numbers, course, target, r, is_underway):
+    """Stand at the begin of row r, or where it was put away; returns its largest margin so far."""
+    if is_underway:
+        return take_up(state, numbers.block, target.kept[r], target.counts[r])
+    begin_row(numbers, r)
+    for i in range(state.count.shape[0]):
+        state.count[i] = 0
+    if course.near > 0.0:
+        derivative(dyn, scratch, state.clock[TIME], state.y, scratch.stages[0], scratch.multipliers)
+        return scratch.report[0]
+    return 0.0
+
+
 @threaded
 def run_rows(dyn, scratch, state, settings, contacts, genevas, numbers, course, target, rows):
     """Simulate R rows of a run, which stands in ``numbers.block`` (SingleRun.parts); ``rows``: Outputs (outputs.py).
@@ -133,7 +147,6 @@ def run_rows(dyn, scratch, state, settings, contacts, genevas, numbers, course, 
     upto = target.upto
     passed = target.passed
     kept = target.kept
-    counts = target.counts
     end = t[t.shape[0] - 1]
     whole = upto == t.shape[0]
     steps = course.at_once
@@ -152,16 +165,7 @@ def run_rows(dyn, scratch, state, settings, contacts, genevas, numbers, course, 
             continue
         out = Output(t, rows.y[r], rows.a[r], rows.lam[r], rows.work[r], rows.margin[r])
         ended = PAUSED
-        widest = 0.0
-        if status[r] == UNDERWAY:
-            widest = take_up(state, block, kept[r], counts[r])
-        else:
-            begin_row(numbers, r)
-            for i in range(state.count.shape[0]):
-                state.count[i] = 0
-            if course.near > 0.0:
-                derivative(dyn, scratch, state.clock[TIME], state.y, scratch.stages[0], scratch.multipliers)
-                widest = scratch.report[0]
+        widest = _begin_or_take_up(dyn, scratch, state, numbers, course, target, r, status[r] == UNDERWAY)
         since = state.clock[TIME]
         counted = state.count[ACCEPTED]
         unmet = (1 << passed.shape[0]) - 1
@@ -203,9 +207,9 @@ def run_rows(dyn, scratch, state, settings, contacts, genevas, numbers, course, 
             rows.released[r, e] = contacts.events.gone[e]
         status[r] = STOPPED if stop[0] != 0 else ended
         if status[r] == KNOWN:
-            put_away(state, block, widest, kept[r], counts[r])
+            put_away(state, block, widest, kept[r], target.counts[r])
         elif not whole and status[r] == PAUSED and state.count[NEXT] >= upto:
-            put_away(state, block, widest, kept[r], counts[r])
+            put_away(state, block, widest, kept[r], target.counts[r])
             status[r] = UNDERWAY
         rows.steps[r] = state.count[ACCEPTED]
 

@@ -46,7 +46,7 @@ class Starts:
         self.work: Any = designs.copied()
 
     @cached_property
-    def _bare(self) -> Packed:
+    def _without_contacts(self) -> Packed:
         """The mechanism without the rows of contacts and of joints that stick, which hold no start."""
         ready = self.ready
         if not ready.switches.contacts and not ready.sticks:
@@ -63,7 +63,7 @@ class Starts:
         for k, row in enumerate(rows):
             try:
                 self.designs.put_start(self.work, row)
-                initial = consistent(self.work, self._bare, ready.start)
+                initial = consistent(self.work, self._without_contacts, ready.start)
                 q[k], v[k] = initial.q, initial.v
                 reasons.append("; ".join(initial.velocities) or None)
             except Exception as error:

@@ -211,18 +211,18 @@ class Worker:
         alone: list[str | None] = [None] * count
         columns: dict[str, np.ndarray] = {}
 
-        def put(part: dict[str, np.ndarray], at: Any) -> None:
+        def write_part(part: dict[str, np.ndarray], at: Any) -> None:
             for name, values in part.items():
                 if name not in columns:
                     columns[name] = np.full((count, *values.shape[1:]), np.nan)
                 columns[name][at] = values
 
         if len(good):
-            put(self._columns(motions(good)), good)
+            write_part(self._columns(motions(good)), good)
         for k in np.flatnonzero(out.status != REACHED).tolist():
             status = int(out.status[k])
             done = failed(STOP) if status == STOPPED else self._single(rows[k], LEFT.get(status, SMALL))
-            put(done.columns, [k])
+            write_part(done.columns, [k])
             reasons[k], alone[k] = done.reasons[0], done.alone[0]
         return Done(columns, reasons, alone)
 

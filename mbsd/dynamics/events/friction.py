@@ -131,6 +131,40 @@ def find_resting(dyn, scratch, contacts, v, halted):
             contacts.vector[RATE, k] = 0.0
 
 
+@internal
+def _fill_tableau(contacts, compliance, rates, first, both, size, fastest):
+    """Fill the tableau with the ``both`` rows that may give way, of which gaps are the ``first``; w = z at the begin.
+
+    ``size``: of compliances, ``fastest``: of rates, by which all is divided.
+    """
+    alone = contacts.vector[ALONE]
+    tableau = contacts.tableau
+    places = contacts.basis[1]
+    ways = both - first
+    n = first + 3 * ways
+    last = 2 * n + 1
+    for i in range(n):
+        for j in range(last):
+            tableau[i, j] = 0.0
+        tableau[i, i] = 1.0
+        tableau[i, 2 * n] = -1.0
+    for i in range(both):
+        unit = 1.0 / math.sqrt(alone[places[i]])
+        rate = rates[places[i]] * unit / fastest
+        tableau[i, last] = rate
+        if i >= first:
+            tableau[i + ways, last] = -rate
+        for j in range(both):
+            value = compliance[places[i], places[j]] * unit / math.sqrt(alone[places[j]]) / size
+            tableau[i, n + j] = -value
+            if j >= first:
+                tableau[i, n + j + ways] = value
+            if i >= first:
+                tableau[i + ways, n + j] = value
+                if j >= first:
+                    tableau[i + ways, n + j + ways] = -value
+
+
 @lazy(bool)
 def solve_with_friction(contacts, compliance, rates, coefficient, out):
     """Fill out (c,) with N of the gaps and T of the ways in chosen[TAKING], 0 of others.
@@ -170,26 +204,7 @@ def solve_with_friction(contacts, compliance, rates, coefficient, out):
     ways = both - first
     n = first + 3 * ways
     last = 2 * n + 1
-    for i in range(n):
-        for j in range(last):
-            tableau[i, j] = 0.0
-        tableau[i, i] = 1.0
-        tableau[i, 2 * n] = -1.0
-    for i in range(both):
-        unit = 1.0 / math.sqrt(alone[places[i]])
-        rate = rates[places[i]] * unit / fastest
-        tableau[i, last] = rate
-        if i >= first:
-            tableau[i + ways, last] = -rate
-        for j in range(both):
-            value = compliance[places[i], places[j]] * unit / math.sqrt(alone[places[j]]) / size
-            tableau[i, n + j] = -value
-            if j >= first:
-                tableau[i, n + j + ways] = value
-            if i >= first:
-                tableau[i + ways, n + j] = value
-                if j >= first:
-                    tableau[i + ways, n + j + ways] = -value
+    _fill_tableau(contacts, compliance, rates, first, both, size, fastest)
     for k in range(ways):
         way = places[first + k]
         unit = 1.0 / math.sqrt(alone[way])

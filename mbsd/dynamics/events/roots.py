@@ -119,7 +119,7 @@ def _lowest(piece):
 
 
 @internal
-def _put(piece, a, fa, b, fb, falls, rises):
+def _set_piece(piece, a, fa, b, fb, falls, rises):
     piece[A] = a
     piece[FA] = fa
     piece[B] = b
@@ -172,7 +172,7 @@ def _interval(dyn, scratch, contacts, k, x, values, i, count):
         falls = min(falls, left)
     if i + 2 < count:
         rises = max(rises, right)
-    _put(contacts.intervals[0], a, fa, b, fb, falls, rises)
+    _set_piece(contacts.intervals[0], a, fa, b, fb, falls, rises)
 
 
 @apart
@@ -205,8 +205,8 @@ def _searched(dyn, scratch, contacts, stepping, k, level, truly):
             return a, x
         left = (fx - fa) / (x - a)
         right = (fb - fx) / (b - x)
-        _put(pieces[waiting], x, fx, b, fb, max(left, falls), rises)
-        _put(pieces[waiting + 1], a, fa, x, fx, falls, min(right, rises))
+        _set_piece(pieces[waiting], x, fx, b, fb, max(left, falls), rises)
+        _set_piece(pieces[waiting + 1], a, fa, x, fx, falls, min(right, rises))
         waiting += 2
     return 0.0, -1.0
 
@@ -233,7 +233,7 @@ def first_dip(dyn, scratch, contacts, stepping, k, x, values, count, still):
             t = contacts.clock[START] + contacts.clock[LENGTH] * below
             if of_motion(dyn, scratch, contacts, stepping, k, t) < -still:
                 return above, below
-        _put(contacts.intervals[0], x[i], values[i], x[i + 1], values[i + 1], kept_falls, kept_rises)
+        _set_piece(contacts.intervals[0], x[i], values[i], x[i + 1], values[i + 1], kept_falls, kept_rises)
         above, below = _searched(dyn, scratch, contacts, stepping, k, -still, True)
         if below >= 0.0:
             return above, below

@@ -248,7 +248,7 @@ REPEATED_HELD, UNTIL, NO_MORE = repeated_rows.HELD, repeated_rows.UNTIL, repeate
 
 
 @internal
-def _put(dyn, contacts, k, row):
+def _set_row(dyn, contacts, k, row):
     """Put a row, or -1, where the k-th that may be released stands."""
     release = contacts.events.release
     if release[k, BLOCK] >= 0:
@@ -277,10 +277,10 @@ def hold_joints(dyn, contacts):
     if contacts.repeated.place.shape[0] > 0:
         return
     for k in range(release.shape[0]):
-        _put(dyn, contacts, k, release[k, ROW])
+        _set_row(dyn, contacts, k, release[k, ROW])
     for k in range(release.shape[0]):  # afterwards, as several events may release one joint
         if events.gone[release[k, GROUP]] < math.inf:
-            _put(dyn, contacts, k, -1)
+            _set_row(dyn, contacts, k, -1)
 
 
 @lazy(None)

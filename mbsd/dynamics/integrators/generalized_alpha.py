@@ -74,6 +74,23 @@ def _weights(rho):
     return m, f, g, 0.25 * (g + 0.5) ** 2
 
 
+@internal
+def _predict(scratch, state, h, rho):
+    """Put what a step of h (s) knows at its begin into stages[1] and the first row of stages[2]."""
+    y = state.y
+    x = state.memory[0]
+    known = scratch.stages[1]
+    slope = scratch.stages[2]
+    m, f, g, b = _weights(rho)
+    if state.clock[STEP] > 0.0:
+        for c in range(3, y.shape[1]):  # x is the acceleration at a part of a step after t
+            x[c] = state.dy[1, c] + h / state.clock[STEP] * (x[c] - state.dy[1, c])
+    for c in range(3, y.shape[1]):
+        known[0, c] = y[0, c] + h * (y[1, c] + h * (0.5 - b) * x[c])
+        known[1, c] = y[1, c] + h * (1.0 - g) * x[c]
+        slope[0, c] = m * x[c] - f * state.dy[1, c]
+
+
 @kernel
 def advance(dyn, scratch, state, out, settings, end, max_steps):
     """Go on to ``end`` (s), ``max_steps`` steps at most, writing the outputs passed. Returns a status."""
@@ -106,13 +123,7 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
         h, reached = fixed_step(state, out, settings, end)
         if abs(h - factored) > 1e-6 * h:
             factored = 0.0
-        if state.clock[STEP] > 0.0:
-            for c in range(3, n3):  # x is the acceleration at a part of a step after t
-                x[c] = state.dy[1, c] + h / state.clock[STEP] * (x[c] - state.dy[1, c])
-        for c in range(3, n3):
-            known[0, c] = y[0, c] + h * (y[1, c] + h * (0.5 - b) * x[c])
-            known[1, c] = y[1, c] + h * (1.0 - g) * x[c]
-            slope[0, c] = m * x[c] - f * state.dy[1, c]
+        _predict(scratch, state, h, rho)
         last = 1e300
         converged = False
         for k in range(PASSES):

@@ -348,6 +348,56 @@ def _outputs(dyn, scratch, state, out, h, reached):
         state.count[NEXT] = at + 1
 
 
+@internal
+def _begin_at_zero(k):
+    """Let the search for the stages begin at the state itself."""
+    for i in range(3):
+        for part in range(2):
+            for c in range(3, k.shape[2]):
+                k[Z + i, part, c] = 0.0
+
+
+@internal
+def _factor_of(error, h, before, error_before, passes):
+    """Return the factor by which the step h (s) may grow, after ``passes`` and by this error and the one before."""
+    factor = error**-0.25 if error > 0.0 else 10.0
+    if before > 0.0 and error > 0.0:
+        factor *= min(1.0, h / before * (error_before / error) ** 0.25)
+    return factor * (0.9 * (2.0 * PASSES + 1.0) / (2.0 * PASSES + passes))
+
+
+@internal
+def _accept(dyn, scratch, state, out, h, reached):
+    """Write the outputs within the step h (s), whose end is stages[AFTER], and stand at its end."""
+    y = state.y
+    _outputs(dyn, scratch, state, out, h, reached)
+    for i in range(3):
+        state.clock[WORK] += h * WEIGHTS[2, i] * scratch.power[i]
+    for part in range(2):
+        for c in range(3, y.shape[1]):
+            y[part, c] = scratch.stages[AFTER, part, c]
+    state.clock[POWER] = derivative(dyn, scratch, reached, y, state.dy, state.lam)
+    state.clock[TIME] = reached
+    state.count[EVALUATIONS] += 1
+    state.count[ACCEPTED] += 1
+
+
+@internal
+def _begin(dyn, scratch, state, settings):
+    """Find the derivative at the state, and the first step if there was none."""
+    begin_run(dyn, scratch, state)
+    if state.clock[STEP] == 0.0:
+        state.clock[STEP] = first_step(dyn, scratch, state, settings, 0.25)
+
+
+@internal
+def _reach(k, y):
+    """Put the end of the step, which its last stage gives, into k[AFTER]."""
+    for part in range(2):
+        for c in range(3, y.shape[1]):
+            k[AFTER, part, c] = y[part, c] + k[Z + 2, part, c]
+
+
 @kernel
 def advance(dyn, scratch, state, out, settings, end, max_steps):
     """Go on to ``end`` (s), ``max_steps`` accepted steps at most, writing the outputs passed. Returns a status."""
@@ -355,9 +405,7 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
     k = scratch.stages
     n3 = y.shape[1]
     newton = max(2.3e-15 / settings.relative, min(0.03, math.sqrt(settings.relative)))
-    begin_run(dyn, scratch, state)
-    if state.clock[STEP] == 0.0:
-        state.clock[STEP] = first_step(dyn, scratch, state, settings, 0.25)
+    _begin(dyn, scratch, state, settings)
     accepted = 0
     refused = False
     current = False  # A and B belong to this step
@@ -382,10 +430,7 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
         if before > 0.0 and not refused:
             _extrapolate(scratch, h / before)
         else:
-            for i in range(3):
-                for part in range(2):
-                    for c in range(3, n3):
-                        k[Z + i, part, c] = 0.0
+            _begin_at_zero(k)
         passes = -1
         while passes < 0:
             if not usable:
@@ -401,15 +446,10 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
                 if current:
                     break
                 usable = False
-                for i in range(3):
-                    for part in range(2):
-                        for c in range(3, n3):
-                            k[Z + i, part, c] = 0.0
+                _begin_at_zero(k)
         error = 1e9
         if passes > 0:
-            for part in range(2):
-                for c in range(3, n3):
-                    k[AFTER, part, c] = y[part, c] + k[Z + 2, part, c]
+            _reach(k, y)
             error = _estimate(dyn, scratch, state, settings, h, refused or before == 0.0)
             if error < 1.0:
                 project(dyn, scratch, t + h, k[AFTER], 2)
@@ -417,10 +457,7 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
                     passes = -1
         factor = 0.5
         if passes > 0 and error == error:
-            factor = error**-0.25 if error > 0.0 else 10.0
-            if before > 0.0 and error > 0.0:
-                factor *= min(1.0, h / before * (error_before / error) ** 0.25)
-            factor *= 0.9 * (2.0 * PASSES + 1.0) / (2.0 * PASSES + passes)
+            factor = _factor_of(error, h, before, error_before, passes)
         if passes < 0 or not error < 1.0:
             if h < SMALLEST_STEP * settings.longest:
                 return NOT_FINITE
@@ -429,22 +466,11 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
             refused = True
             continue
         reached = end if last else t + h
-        _outputs(dyn, scratch, state, out, h, reached)
-        for i in range(3):
-            state.clock[WORK] += h * WEIGHTS[2, i] * scratch.power[i]
-        for part in range(2):
-            for c in range(3, n3):
-                y[part, c] = k[AFTER, part, c]
-        state.clock[POWER] = derivative(dyn, scratch, reached, y, state.dy, state.lam)
-        state.clock[TIME] = reached
-        state.count[EVALUATIONS] += 1
-        state.count[ACCEPTED] += 1
+        _accept(dyn, scratch, state, out, h, reached)
         accepted += 1
         usable = passes <= 2 or scratch.report[3] <= KEPT
         current = False
-        factor = min(10.0, factor)
-        if refused:
-            factor = min(factor, 1.0)
+        factor = min(factor, 1.0 if refused else 10.0)
         if (usable and 1.0 <= factor < 1.2) or (last and factor > 1.0):
             factor = 1.0
         if not last or factor < 1.0:

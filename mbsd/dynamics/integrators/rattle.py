@@ -125,6 +125,36 @@ def _driver_work(dyn, scratch, lam):
     return work
 
 
+@internal
+def _close(dyn, scratch, h, y):
+    """Find v_half, in scratch.stages[0, 1], and lam with which the pose y[0] after h seconds closes.
+
+    Returns False where no pass gets nearer.
+    """
+    schur = dyn.schur
+    ws = scratch.ws
+    side = scratch.factors.side
+    start = scratch.stages[0, 0]
+    v = scratch.stages[0, 1]
+    lam = ws.right[0]
+    last = 1e300
+    for _ in range(PASSES):
+        for c in range(3, v.shape[0]):
+            y[0, c] = start[c] + h * v[c]
+        position(dyn.system, y[0], scratch.drive, ws)
+        for k in range(schur.rows.shape[0]):
+            for s in range(2):
+                r = schur.rows[k, s]
+                side[k, s, 0] = ws.phi[r] / h if r >= 0 else 0.0
+        moved = abs(h) * _correct(dyn, scratch, v, lam)
+        if moved <= CLOSED or (moved <= ROUNDING and moved > 0.3 * last):
+            return True
+        if not moved < 1e3:
+            return False
+        last = moved
+    return False
+
+
 @apart
 def rattle_step(dyn, scratch, t, h, y, power):
     """Step y (2, 3 nb) from t to t + h (s), h of either sign; _stand was called at its start, and is at its end.
@@ -151,24 +181,7 @@ def rattle_step(dyn, scratch, t, h, y, power):
         lam[r] = 0.0
     if scratch.drive.shape[0] > 1:
         evaluate_laws(dyn.laws, scratch.drive.shape[0], t + h, scratch.drive)
-    last = 1e300
-    converged = False
-    for _ in range(PASSES):
-        for c in range(3, n3):
-            y[0, c] = start[c] + h * v[c]
-        position(system, y[0], scratch.drive, ws)
-        for k in range(schur.rows.shape[0]):
-            for s in range(2):
-                r = schur.rows[k, s]
-                side[k, s, 0] = ws.phi[r] / h if r >= 0 else 0.0
-        moved = abs(h) * _correct(dyn, scratch, v, lam)
-        if moved <= CLOSED or (moved <= ROUNDING and moved > 0.3 * last):
-            converged = True
-            break
-        if not moved < 1e3:
-            break
-        last = moved
-    if not converged:
+    if not _close(dyn, scratch, h, y):
         return False
     for c in range(3, n3):
         y[0, c] = start[c] + h * v[c]

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mbsd.arrays.curve_branches import CurveBranches
-from mbsd.arrays.loads import remembers
 from mbsd.arrays.packing import Packed
 from mbsd.compiling.jit import Often
 from mbsd.dynamics import state as run_state
@@ -25,7 +24,7 @@ from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.state import PAUSED, TIME, State
 from mbsd.dynamics.switches import JointStick, Switches
 from mbsd.equations.interactions.switching import APPROACHED
-from mbsd.equations.loads import Loads
+from mbsd.equations.loads import Loads, remembers
 from mbsd.kinematics.limits.free_wheels import FreeWheels
 from mbsd.kinematics.pose.initial import Initial
 from mbsd.results.views import Mobility

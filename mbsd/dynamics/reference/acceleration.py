@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import lazy, merged
+from mbsd.compiling.jit import internal, lazy, merged
 from mbsd.dynamics.reference.pins import factor_pins, solve_pins
 from mbsd.dynamics.reference.refinement import MOST_MORE, SHRINKS, refine, unbalanced
 from mbsd.dynamics.reference.schur import factor_schur, times_jacobian
@@ -54,6 +54,33 @@ def _begin_again(dyn, scratch, t, state, a, lam):
     return power + begin_friction(dyn.system, dyn.loads, state[1], scratch.ws, force)
 
 
+@internal
+def _begin(dyn, force, a, lam):
+    """Begin with the weights alone, and without accelerations and multipliers."""
+    for c in range(a.shape[0]):
+        force[c] = dyn.weight[c]
+        a[c] = 0.0
+    for r in range(lam.shape[0]):
+        lam[r] = 0.0
+
+
+@internal
+def _stabilise(dyn, scratch, v):
+    """Add Baumgarte's terms to gamma, at velocities v (3 nb,) and the pose evaluated last."""
+    schur = dyn.schur
+    alpha = dyn.baumgarte[0]
+    beta = dyn.baumgarte[1]
+    phi = scratch.ws.phi
+    gamma = scratch.ws.right[0]
+    for k in range(schur.rows.shape[0]):
+        for s in range(2):
+            r = schur.rows[k, s]
+            if r >= 0:
+                gamma[r] -= 2.0 * alpha * times_jacobian(scratch.factors, schur, k, s, v) + beta * beta * phi[r]
+    for k in range(dyn.system.driven.shape[0]):
+        gamma[dyn.system.driven[k, 0]] += 2.0 * alpha * scratch.drive[dyn.system.driven[k, 1], 1]
+
+
 @merged
 def accelerate(dyn, scratch, t, state, a, lam):
     """Fill a (3 nb,) and lam (m,) at a state (2, 3 nb) and time (s).
@@ -74,7 +101,6 @@ def accelerate(dyn, scratch, t, state, a, lam):
     if drive.shape[0] > 1:
         evaluate_laws(dyn.laws, drive.shape[0], t, drive)
     alpha = dyn.baumgarte[0]
-    beta = dyn.baumgarte[1]
     pins = schur.pins.shape[0] > 0 and not alpha > 0.0
     if pins:
         scratch.report[0] = factor_pins(schur, factors, ws.cos_sin, system.marker_arm, q, v, dyn.inverse, 0.0)
@@ -82,11 +108,7 @@ def accelerate(dyn, scratch, t, state, a, lam):
         evaluate_position(system, q, drive, ws)
         evaluate_gamma(system, v, drive, ws, gamma)
         scratch.report[0] = factor_schur(schur, dyn.inverse, ws.jac, factors, 0.0)
-    for c in range(n3):
-        force[c] = dyn.weight[c]
-        a[c] = 0.0
-    for r in range(lam.shape[0]):
-        lam[r] = 0.0
+    _begin(dyn, force, a, lam)
     if dyn.loads.total > 0:
         power = apply_loads(dyn.loads, dyn.laws, t, q, v, ws.cos_sin, force)
     if pins:
@@ -97,13 +119,7 @@ def accelerate(dyn, scratch, t, state, a, lam):
     if with_friction:
         power += begin_friction(system, dyn.loads, v, ws, force)
     if alpha > 0.0:
-        for k in range(schur.rows.shape[0]):
-            for s in range(2):
-                r = schur.rows[k, s]
-                if r >= 0:
-                    gamma[r] -= 2.0 * alpha * times_jacobian(factors, schur, k, s, v) + beta * beta * ws.phi[r]
-        for k in range(system.driven.shape[0]):
-            gamma[system.driven[k, 0]] += 2.0 * alpha * drive[system.driven[k, 1], 1]
+        _stabilise(dyn, scratch, v)
     first = dyn.passes
     tries = 0
     left = math.inf

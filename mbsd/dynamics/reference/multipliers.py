@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.arrays.curve_branches import tabulate_along
-from mbsd.arrays.loads import stretches
 from mbsd.compiling.jit import kernel
 from mbsd.dynamics.reference.refinement import solve_balanced
 from mbsd.dynamics.reference.schur import factor_schur, schur_factors
 from mbsd.equations.laws import tabulate_law
-from mbsd.equations.loads import tabulate_loads
+from mbsd.equations.loads import stretches, tabulate_loads
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed

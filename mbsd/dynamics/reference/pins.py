@@ -14,7 +14,7 @@ import math
 
 import numpy as np
 
-from mbsd.compiling.jit import lazy
+from mbsd.compiling.jit import internal, lazy
 from mbsd.dynamics.reference.schur import INDEX, Schur, eliminate, solve_schur
 from mbsd.equations.system import System
 
@@ -33,6 +33,27 @@ def with_pins(schur: Schur, system: System, rows: int, least: int = MANY) -> Sch
     pin = np.empty(2 * count, np.int64)
     pin[system.point[:, 2]] = np.arange(count)
     return schur._replace(pins=np.ascontiguousarray(system.point[pin[first], :2], INDEX))
+
+
+@internal
+def _couple(schur, fac, begin):
+    """Add to S what pins on one body have to do with each other: products from ``begin`` on."""
+    arm = fac.arm
+    weighted = fac.weighted
+    value = fac.value
+    for e in range(begin, schur.product.shape[0]):
+        t = schur.product[e, 0]
+        i = schur.product[e, 1]
+        j = schur.product[e, 2]
+        sign = arm[i, 2]
+        a0 = arm[i, 0]
+        a1 = arm[i, 1]
+        w0 = weighted[j, 0]
+        w1 = weighted[j, 1]
+        value[t, 0] += sign * weighted[j, 2] + a0 * w0
+        value[t, 1] += a0 * w1
+        value[t, 2] += a1 * w0
+        value[t, 3] += sign * weighted[j, 3] + a1 * w1
 
 
 @lazy(float)
@@ -105,19 +126,7 @@ def factor_pins(schur, fac, cos_sin, marker_arm, q, v, inverse, lift):
         value[k, 3] = v3
         low[k, 0] = v0
         low[k, 3] = v3
-    for e in range(between, schur.product.shape[0]):  # those of one pin come first
-        t = schur.product[e, 0]
-        i = schur.product[e, 1]
-        j = schur.product[e, 2]
-        sign = arm[i, 2]
-        a0 = arm[i, 0]
-        a1 = arm[i, 1]
-        w0 = weighted[j, 0]
-        w1 = weighted[j, 1]
-        value[t, 0] += sign * weighted[j, 2] + a0 * w0
-        value[t, 1] += a0 * w1
-        value[t, 2] += a1 * w0
-        value[t, 3] += sign * weighted[j, 3] + a1 * w1
+    _couple(schur, fac, between)
     return eliminate(schur, fac)
 
 

@@ -128,7 +128,7 @@ def embed(ready: PreparedDynamics, q: np.ndarray, v: np.ndarray, time: float) ->
     """The best choice of coordinates at a consistent q, v (3 nb,), or None where there is none."""
     best = None
     for choice in choices(ready.packed, q, _freedoms(ready)):
-        made = _made(ready, choice, _freedoms(ready))
+        made = _embed_by(ready, choice, _freedoms(ready))
         made.sensitivity = _sensitivity(ready, made, q, v, time)
         if made.sensitivity < POOR and (best is None or made.sensitivity < best.sensitivity):
             best = made
@@ -192,7 +192,7 @@ def begin_at(arrays: Embedding, scratch: EmbeddingScratch, state: np.ndarray, ti
     scratch.watch[LIMIT] = limit
 
 
-def _made(ready: PreparedDynamics, choice: Choice, count: int) -> Embedded:
+def _embed_by(ready: PreparedDynamics, choice: Choice, count: int) -> Embedded:
     packed, loads = ready.packed, ready.dynamics.loads
     groups, size = choice.plan.groups(), packed.size
     coordinates = coordinates_of(choice.plan, count)

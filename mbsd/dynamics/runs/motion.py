@@ -57,7 +57,7 @@ class IndependentSteps:
     def __init__(self, run: Run, made: Embedded, state: run_state.State) -> None:
         self.run, self.ready, self.whole = run, run.ready, state
         self._passing, self._passed = PASSING, -math.inf
-        self._take(made)
+        self._enter(made)
 
     def to_end(
         self, state: run_state.State, out: run_state.Output, progress: Callable[[float], None] | None = None
@@ -120,7 +120,7 @@ class IndependentSteps:
         """Let the whole state be gone on from in reference coordinates."""
         self._start_anew()
 
-    def _take(self, made: Embedded) -> None:
+    def _enter(self, made: Embedded) -> None:
         """Go on in these coordinates from the whole state."""
         (q, v), clock = self.whole.y, self.whole.clock
         self.arrays = made.copied(self.run.tolerance)
@@ -157,7 +157,7 @@ class IndependentSteps:
         """
         now, made = float(self.scratch.watch[SENSITIVITY]), self._embedded()
         if made is not None and made.sensitivity < HYSTERESIS * now:
-            self._take(made)
+            self._enter(made)
             return True
         self.scratch.watch[LIMIT] = min(DOUBLED * now, POOR)
         return now < POOR
@@ -177,7 +177,7 @@ class IndependentSteps:
                 return False
             made = self._embedded()
             if made is not None:
-                self._take(made)
+                self._enter(made)
                 return True
             pace.note()
 

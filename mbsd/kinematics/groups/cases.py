@@ -176,7 +176,7 @@ def _kept(case, n, b, lx, ly, tx, ty, apart):
 
 
 @internal
-def _asked(case, n, b, lx, ly, tx, ty, apart):
+def _predicted_side(case, n, b, lx, ly, tx, ty, apart):
     if n[NEAR] > 0.0:
         theta = predicted(case.base, case.coordinate, b)
         c = math.cos(theta)
@@ -188,7 +188,7 @@ def _asked(case, n, b, lx, ly, tx, ty, apart):
     return n[SIGN]
 
 
-branch_of = alternatives({PoseAlone: _kept, AlongLaws: _kept, PerCoordinate: _asked})
+branch_of = alternatives({PoseAlone: _kept, AlongLaws: _kept, PerCoordinate: _predicted_side})
 """Sign of the root, or 0 where it is in doubt: near to where both poses meet that to which the motion leads.
 
 Then it is the side to which (lx, ly) of body b points along (tx, ty); ``apart`` >= 0: how far it points there.

@@ -105,7 +105,7 @@ class _Parts:
         written = tables_of(self.plan, block)
         if written is None:
             return False
-        self._take(written, block.rows)
+        self._add_block(written, block.rows)
         return True
 
     def _add_train(self, tree: list[tuple[int, int, Link | None]], equations: list[int]) -> bool:
@@ -135,7 +135,7 @@ class _Parts:
         rows_of = self.packed.rows_of
         return {row for joint in self.plan.used for row in rows_of(joint)} | self._taken_rows
 
-    def _take(self, block: Tables, rows: Sequence[int]) -> None:
+    def _add_block(self, block: Tables, rows: Sequence[int]) -> None:
         self.head.append(
             [len(block.tree), len(block.equations), len(block.near), 0, len(self.tree), len(self.equations),
              len(self.near), len(self.packed.motions) + 1, len(self.packed.body_names)]

@@ -122,7 +122,7 @@ class Recipe(NamedTuple):
     by_letter: bool
     """Whether ``make`` takes its links by their letters."""
 
-    def made(self, at: Places, links: Sequence[Link]) -> Made | None:
+    def build(self, at: Places, links: Sequence[Link]) -> Made | None:
         """Return the group, from links that stand for its own."""
         return self.make(at, *self.bodies, *([{link.kind: link for link in links}] if self.by_letter else links))
 
@@ -235,7 +235,7 @@ class Plan:
             own = recipe.links
             if links is not None:
                 own = [link if link.joint >= joints else links[link.joint, link.first] for link in own]
-            made = recipe.made(at, own)
+            made = recipe.build(at, own)
             if made is None or made[:2] != (code, bodies):
                 return None
             row[: len(made[3])] = made[3]

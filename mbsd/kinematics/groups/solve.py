@@ -86,7 +86,7 @@ SOLVED_CLOSE = 4
 
 
 @internal
-def give(body, rate, b, q, v, a, turn):
+def write_motion(body, rate, b, q, v, a, turn):
     """Copy pose and rates of body b from the closed forms to a row of the motion, without the angle."""
     at = 3 * b
     q[at] = body[b, X]
@@ -99,7 +99,7 @@ def give(body, rate, b, q, v, a, turn):
 
 
 @internal
-def take(body, rate, b, q, v, a, turn):
+def read_motion(body, rate, b, q, v, a, turn):
     """Take pose and rates of body b from a row of the motion to the closed forms."""
     at = 3 * b
     body[b, X] = q[at]
@@ -132,6 +132,21 @@ class Poses(NamedTuple):
     """(4, 8)"""
     before: Any
     """(g, 3) squared sines and their rates; the last column keeps the squared sines of the first row of all."""
+
+
+@internal
+def _solve_block_of(blocks, n, k, motion, turn, start, determinant, point):
+    """Solve block n at row k of the motion; returns SOLVED, or why not."""
+    head = blocks.head[n]
+    return solve_block(
+        k,
+        Block(
+            head, blocks.tree[head[TREE_AT] :], blocks.rows[head[ROWS_AT] :], blocks.near[head[NEAR_AT] :],
+            blocks.frame[head[TREE_AT] :], blocks.arms[head[ROWS_AT] :], blocks.numbers,
+        ),
+        History(motion.times, motion.drives, motion.q, motion.v, motion.a, turn, start, determinant[n]),
+        Work(blocks.unknown, blocks.jac, blocks.out, blocks.du, blocks.scratch, point),
+    )  # fmt: skip
 
 
 @kernel
@@ -171,25 +186,17 @@ def solve_groups(groups, blocks, start, motion, determinant, poses, tiny, first_
                 turning = 3 * bodies[FIRST] + 2
                 if goes_on and n[CARRIES_ON] > 0.0 and wound(qk, last, vk, v[k - 1], ak, a[k - 1], h, turning):
                     return DOUBTED, k, 0.5
-                take(body, rate, bodies[FIRST], qk, vk, ak, turn)
+                read_motion(body, rate, bodies[FIRST], qk, vk, ak, turn)
                 continue
             if kind == BLOCK:
-                head = blocks.head[groups.motion[e]]
-                state = solve_block(
-                    k,
-                    Block(
-                        head, blocks.tree[head[TREE_AT] :], blocks.rows[head[ROWS_AT] :], blocks.near[head[NEAR_AT] :],
-                        blocks.frame[head[TREE_AT] :], blocks.arms[head[ROWS_AT] :], blocks.numbers,
-                    ),
-                    History(times, drives, q, v, a, turn, start, determinant[groups.motion[e]]),
-                    Work(blocks.unknown, blocks.jac, blocks.out, blocks.du, blocks.scratch, poses.point),
-                )  # fmt: skip
+                state = _solve_block_of(blocks, groups.motion[e], k, motion, turn, start, determinant, poses.point)
                 if state == DOUBTED_BEFORE:
                     return DOUBTED, k - 1, 0.5
                 if state != SOLVED:
                     return state, k, 0.5
+                head = blocks.head[groups.motion[e]]
                 for i in range(head[TREE_AT], head[TREE_AT] + head[BODIES]):
-                    take(body, rate, blocks.tree[i, BODY], qk, vk, ak, turn)
+                    read_motion(body, rate, blocks.tree[i, BODY], qk, vk, ak, turn)
                 continue
             law = bodies[LAW]
             if law > 0 and goes_on and jumps(drives[k, law], drives[k - 1, law], h, motion.stride[law]):
@@ -201,7 +208,7 @@ def solve_groups(groups, blocks, start, motion, determinant, poses, tiny, first_
                 b = bodies[FIRST + side]
                 if b < 0:
                     break
-                give(body, rate, b, qk, vk, ak, turn)
+                write_motion(body, rate, b, qk, vk, ak, turn)
                 leader = groups.turning[e, side]
                 if kind == DRIVEN:
                     qk[3 * b + 2] = qk[3 * leader + 2] + n[SENSE] * (groups.angle[e, side] + drives[k, law, 0])

@@ -75,7 +75,7 @@ class Batched:
         lengths, places = self._numbers(x)
         values, moved = parameters(self._m, self._ready.packed, lengths, places)
         if self._sweeps is None:
-            self._sweeps = self._made(moved)
+            self._sweeps = self._build_sweeps(moved)
         if not self._pushes:
             batch = self._sweeps(values, self._threads)
             settle(self._sweeps, lambda: self._with_finer_steps(moved), batch, values, self._threads)
@@ -90,10 +90,10 @@ class Batched:
         return self._sweeps.pushed(values, pushes, self._poses, self._threads)
 
     def _with_finer_steps(self, moved: Sequence[Moved]) -> DesignSweeps:
-        self._finer = self._finer or self._made(moved, FINER)
+        self._finer = self._finer or self._build_sweeps(moved, FINER)
         return self._finer
 
-    def _made(self, moved: Sequence[Moved], finer: int = 1) -> DesignSweeps:
+    def _build_sweeps(self, moved: Sequence[Moved], finer: int = 1) -> DesignSweeps:
         return DesignSweeps(self._m, self._ready, self._grid, moved, self._angles, finer)
 
     def _numbers(self, x: np.ndarray) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:

@@ -124,7 +124,8 @@ def _to_bed(normal: np.ndarray) -> np.ndarray:
         return np.diag([1.0, -1.0, -1.0])
     x, y, z = normal
     cross = np.array([[0.0, 0.0, x], [0.0, 0.0, y], [-x, -y, 0.0]])  # of normal x (-z)
-    return np.eye(3) + cross + cross @ cross / (1 - z)
+    below = (x * x + y * y) / (1 + z) if z > 0 else 1 - z  # 1 - z, with all digits where z is near 1
+    return np.eye(3) + cross + cross @ cross / below
 
 
 def _least_rectangle(vertices: np.ndarray) -> float:

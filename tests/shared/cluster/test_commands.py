@@ -80,7 +80,7 @@ def test_a_cluster_with_certificates_does_work_and_lets_nobody_else_in(
     """
     make(tmp_path / "certificates")
     assert (tmp_path / "certificates" / "key.pem").stat().st_mode & 0o077 == 0
-    with pytest.raises(UserError, match="there already"):
+    with pytest.raises(UserError, match="exists already"):
         make(tmp_path / "certificates")
     port = free_port()
     monkeypatch.setenv("CLUSTER_TLS", str(tmp_path / "certificates"))

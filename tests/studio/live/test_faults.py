@@ -47,7 +47,7 @@ def test_a_warm_process_hit_at_the_moment_of_a_save(live: Served, number: signal
         assert httpx.get(live.live.address, timeout=10).status_code == 200
         told = page.hear("line")["text"]
         assert "the process from which those of mechanism.py are forked" in told
-        assert "another one takes its place" in told
+        assert "it is replaced" in told
         page.hear("solved", wanted=lambda header: header["numbers"][0]["value"] == length)
         followed(live, page, length + 0.0005)
     assert live.live.nursery.warm_pid != warm

@@ -119,7 +119,7 @@ def _fill(contacts, lam, n):
 
 
 @internal
-def _put(contacts, lam, before, n, beside):
+def _fill_multipliers(contacts, lam, before, n, beside):
     """Fill lam (m,) with what multipliers ``before`` (m,) become under number[FORCE] of the n rows.
 
     ``beside``: and under the friction of joints that slide.
@@ -169,7 +169,7 @@ def _agree(dyn, scratch, contacts, c, k, beside, lam):
         for i in range(c + k):
             change = max(change, abs(work.number[FORCE, i] + lam[contacts.place[work.row[i], ROW]]))
             largest = max(largest, abs(work.number[FORCE, i]))
-        _put(contacts, lam, before, c + k, beside)
+        _fill_multipliers(contacts, lam, before, c + k, beside)
         if part == PULLED or change <= AGREED_TOGETHER * largest:
             break
     return part

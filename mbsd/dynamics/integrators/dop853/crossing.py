@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import inlined, lazy
+from mbsd.compiling.jit import inlined, internal, lazy
 from mbsd.dynamics.formulation import bends, derivative
 from mbsd.dynamics.integrators.dop853.dense import interpolant, interpolate
 from mbsd.dynamics.integrators.root_search import narrowed, next_part
@@ -113,6 +113,43 @@ def step_after(dyn, scratch, state, settings, t):
     return min(wanted, settings.longest)
 
 
+@internal
+def _land(dyn, scratch, state, settings, reached, end):
+    """Choose the sides on which the next step begins, where the step ends at a switch; the state is the one before."""
+    switch = dyn.loads.switch
+    trial = scratch.state
+    k = scratch.stages
+    tight = TIGHT * switch[0, SIZE]
+    for row in range(1, switch.shape[0]):
+        side = switch[row, KEPT]
+        value = switch[row, VALUE]
+        switch[row, BEFORE] = side
+        if side != 0.0 and -side * value >= min(end, 0.0):
+            switch[row, LOOSE] = 2.0
+        switch[row, KEPT] = 0.0
+        if switch[row, LOOSE] < 2.0 and abs(value) > tight:
+            switch[row, KEPT] = math.copysign(1.0, value)
+    switch[0, HELD] = 1.0
+    switch[0, RATE] = step_after(dyn, scratch, state, settings, reached)
+    switch[0, HELD] = 0.0
+    for row in range(1, switch.shape[0]):
+        switch[row, KEPT] = switch[row, BEFORE]
+    derivative(dyn, scratch, reached, trial, k[LANDED], scratch.multipliers)
+    state.count[EVALUATIONS] += 1
+
+
+@internal
+def _return_to_end(dyn, scratch, state, reached):
+    """Evaluate the end of the step, at ``reached`` (s), once more."""
+    trial = scratch.state
+    for row in range(2):
+        for column in range(3, trial.shape[1]):
+            trial[row, column] = state.y[row, column] + scratch.dense[0, row, column]
+    derivative(dyn, scratch, reached, trial, scratch.stages[LANDED], scratch.multipliers)
+    state.count[EVALUATIONS] += 1
+    dyn.loads.switch[0, CUTS] = 0.0
+
+
 @lazy(float)
 def crossing(dyn, scratch, state, settings, h, reached, work):
     """Return the part below 1 of the tried step that is to be taken again; 1: all is well; 2: it ends at a switch.
@@ -139,23 +176,7 @@ def crossing(dyn, scratch, state, settings, h, reached, work):
         for c in range(3, n3):
             jump = max(jump, abs(k[LANDED, 1, c] - k[12, 1, c]) / allowed(settings, state.y, trial, 1, c))
         if end <= 0.0 or jump * end <= MATTERS * switch[0, RATE]:
-            tight = TIGHT * switch[0, SIZE]
-            for row in range(1, switch.shape[0]):
-                side = switch[row, KEPT]
-                value = switch[row, VALUE]
-                switch[row, BEFORE] = side
-                if side != 0.0 and -side * value >= min(end, 0.0):
-                    switch[row, LOOSE] = 2.0
-                switch[row, KEPT] = 0.0
-                if switch[row, LOOSE] < 2.0 and abs(value) > tight:
-                    switch[row, KEPT] = math.copysign(1.0, value)
-            switch[0, HELD] = 1.0
-            switch[0, RATE] = step_after(dyn, scratch, state, settings, reached)
-            switch[0, HELD] = 0.0
-            for row in range(1, switch.shape[0]):
-                switch[row, KEPT] = switch[row, BEFORE]
-            derivative(dyn, scratch, reached, trial, k[LANDED], scratch.multipliers)
-            state.count[EVALUATIONS] += 1
+            _land(dyn, scratch, state, settings, reached, end)
             return 2.0
         first = reached
     if cuts >= MOST_CUTS:
@@ -192,12 +213,7 @@ def crossing(dyn, scratch, state, settings, h, reached, work):
             return UNCLEAR_STEP
         f = farthest(switch, VALUE) - aim
         if looking and not f > 0.0 and not fb > 0.0:  # a stage alone was beyond, not the motion
-            for row in range(2):
-                for column in range(3, n3):
-                    trial[row, column] = state.y[row, column] + scratch.dense[0, row, column]
-            derivative(dyn, scratch, reached, trial, k[LANDED], scratch.multipliers)
-            state.count[EVALUATIONS] += 1
-            switch[0, CUTS] = 0.0
+            _return_to_end(dyn, scratch, state, reached)
             return 1.0
         looking = False
         a, fa, b, fb, c, fc = narrowed(a, fa, b, fb, x, f)

@@ -41,7 +41,7 @@ def in_slot(at: Places, a: int, links: dict[str, Link]) -> Made | None:
     slide, slot = links["P"], links["S"]
     if slot.first:
         return None
-    return _made(
+    return _group(
         at, a, -1, slide, at.arm(slot.here), slot.other, [*at.arm(slot.there), *at.axis(slot.there), 0.0, 0.0, 0.0]
     )
 
@@ -49,10 +49,10 @@ def in_slot(at: Places, a: int, links: dict[str, Link]) -> Made | None:
 def two_slides(at: Places, a: int, b: int, slide: Link, inner: Link, second: Link) -> Made:
     """Return two sliding bodies pinned to each other."""
     arm = at.arm(inner.there)
-    return _made(at, a, b, slide, at.arm(inner.here), second.other, [*at.on_slide(second, arm), *arm])
+    return _group(at, a, b, slide, at.arm(inner.here), second.other, [*at.on_slide(second, arm), *arm])
 
 
-def _made(at: Places, a: int, b: int, slide: Link, arm: list[float], k2: int, second: list[float]) -> Made:
+def _group(at: Places, a: int, b: int, slide: Link, arm: list[float], k2: int, second: list[float]) -> Made:
     numbers = [*at.on_slide(slide, arm), *arm, *second]
     return PRP, (a, b, slide.other, k2), 0, [float(number) for number in numbers]
 

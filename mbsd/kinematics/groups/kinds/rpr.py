@@ -67,7 +67,7 @@ def in_own_slot(at: Places, a: int, links: dict[str, Link]) -> Made | None:
     if not slot.first:
         return None
     start = np.array(at.arm(slot.here)) - at.arm(pin.here)
-    return _made(
+    return _group(
         at, (a, -1, pin.other, slot.other), pin, at.axis(slot.here), start, at.arm(slot.there), 0.0, [0.0, 0.0]
     )
 
@@ -79,10 +79,10 @@ def on_each_other(at: Places, a: int, b: int, pin: Link, slide: Link, outer: Lin
     q_on_b = at.arm(outer.here)
     reach = turned(np.array(q_on_b) - at.arm(slide.there), angle)
     start = np.array(at.arm(slide.here)) - at.arm(pin.here) + reach
-    return _made(at, (a, b, pin.other, outer.other), pin, axis, start, at.arm(outer.there), angle, q_on_b)
+    return _group(at, (a, b, pin.other, outer.other), pin, axis, start, at.arm(outer.there), angle, q_on_b)
 
 
-def _made(
+def _group(
     at: Places,
     bodies: Bodies,
     pin: Link,

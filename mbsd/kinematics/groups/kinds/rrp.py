@@ -51,16 +51,16 @@ def in_slot(at: Places, a: int, links: dict[str, Link]) -> Made | None:
     if slot.first:
         return None
     bodies, base = (a, -1, pin.other, slot.other), [*at.arm(slot.there), *at.axis(slot.there), 0.0]
-    return _made(at, bodies, pin, at.arm(slot.here), base, [0.0, 0.0])
+    return _group(at, bodies, pin, at.arm(slot.here), base, [0.0, 0.0])
 
 
 def on_slide(at: Places, a: int, b: int, pin: Link, inner: Link, slide: Link) -> Made:
     """Return a pinned body, pinned to one that slides."""
     arm = at.arm(inner.there)
-    return _made(at, (a, b, pin.other, slide.other), pin, at.arm(inner.here), at.on_slide(slide, arm), arm)
+    return _group(at, (a, b, pin.other, slide.other), pin, at.arm(inner.here), at.on_slide(slide, arm), arm)
 
 
-def _made(at: Places, bodies: Bodies, pin: Link, c_on_a: list[float], base: list[float], c_on_b: list[float]) -> Made:
+def _group(at: Places, bodies: Bodies, pin: Link, c_on_a: list[float], base: list[float], c_on_b: list[float]) -> Made:
     a, _, _, k2 = bodies
     numbers = [float(x) for x in (*at.pin(pin), *c_on_a, *base, *c_on_b)]
     reach = at.world(a, c_on_a) - at.world(a, numbers[PA_X:CA_X])
@@ -127,8 +127,6 @@ def solve_rrp(case, e):
     uy = dy + slide * ey
     body[a, COS] = ux * n[UA_X] + uy * n[UA_Y]
     body[a, SIN] = uy * n[UA_X] - ux * n[UA_Y]
-    tx = body[k2, X] + sx
-    ty = body[k2, Y] + sy
     cx = body[k1, X] + px
     cy = body[k1, Y] + py
     ax = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
@@ -137,8 +135,8 @@ def solve_rrp(case, e):
     by = 0.0
     if b >= 0:
         turn_as(body, b, k2, n[COS_B], n[SIN_B])
-        bx = place_by_point(body, b, tx, ty, n[CB_X], n[CB_Y], 0)
-        by = place_by_point(body, b, tx, ty, n[CB_X], n[CB_Y], 1)
+        bx = place_by_point(body, b, body[k2, X] + sx, body[k2, Y] + sy, n[CB_X], n[CB_Y], 0)
+        by = place_by_point(body, b, body[k2, X] + sx, body[k2, Y] + sy, n[CB_X], n[CB_Y], 1)
         body[b, OMEGA] = body[k2, OMEGA]
     inverse = 1.0 / root
     turning = 0.0

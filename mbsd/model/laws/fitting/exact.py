@@ -243,7 +243,7 @@ def _quintics(h: np.ndarray, left: np.ndarray, right: np.ndarray, far: float, wh
     return quintic_coefficients(h, left, np.where(rounded, by_rates, rise), slope, bend)
 
 
-def _at(coefficients: np.ndarray, s: np.ndarray) -> np.ndarray:
+def _values_at(coefficients: np.ndarray, s: np.ndarray) -> np.ndarray:
     """(n, 3) of pieces (n, 6) at s (n,) from their begins."""
     powers = s[:, None] ** np.arange(6)
     order = np.arange(1, 6)
@@ -290,12 +290,12 @@ def _refined(
         peak = np.maximum(peak, size)
         allowed = TOLERANCE * scale
         rounding[:, 2] = np.maximum(rounding[:, 2], CANCELLED * (peak[2] + peak[1] / width))
-        met = (np.abs(_at(coefficients, width / 2) - real) <= np.maximum(allowed, rounding)).all(axis=1)
+        met = (np.abs(_values_at(coefficients, width / 2) - real) <= np.maximum(allowed, rounding)).all(axis=1)
         low, high = np.searchsorted(looks, at[:, 0], "right"), np.searchsorted(looks, at[:, 1])
         count = np.maximum(high - low, 0)
         piece = np.repeat(np.arange(len(at)), count)
         which = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + np.repeat(low, count)
-        off = np.abs(_at(coefficients[piece], looks[which] - at[piece, 0])[:, 2] - seen[which])
+        off = np.abs(_values_at(coefficients[piece], looks[which] - at[piece, 0])[:, 2] - seen[which])
         noise = np.maximum(allowed, rounding)[piece, 2] + ROUNDING * np.abs(seen[which]) * far / long
         met[piece[off > 4 * noise]] = False
         narrow = width <= max(finest(*span), CLOSEST * long)

@@ -195,7 +195,7 @@ def fit_pieces(fit: Fit, load: bool) -> tuple[Compiled, list[float], list[float]
         at = _placed(fit, k, load)
         nodes[k][-1] = nodes[k + 1][0] = at
         before, after = samples[k][-1], samples[k + 1][0]
-        before[:], after[:] = _beside(fit, k, at)
+        before[:], after[:] = _values_beside(fit, k, at)
         step, kink = after[0] - before[0], after[1] - before[1]
         if not load:
             check_jump(cut.at, step, JUMP * spread + 1e-12 * size)
@@ -232,14 +232,14 @@ def _stretches(fit: Fit) -> tuple[list[np.ndarray], list[np.ndarray]]:
 def _placed(fit: Fit, k: int, load: bool) -> float:
     """Cut k (s) where f, or f' of a driver, is the same on both sides, if that is within its bracket."""
     cut = fit.cuts[k]
-    before, after = _beside(fit, k, cut.at)
+    before, after = _values_beside(fit, k, cut.at)
     order = 0 if load else 1
     change = after[order + 1] - before[order + 1]
     at = cut.at - (after[order] - before[order]) / change if change else cut.at
     return at if cut.left <= at <= cut.right else cut.at
 
 
-def _beside(fit: Fit, k: int, at: float) -> tuple[np.ndarray, np.ndarray]:
+def _values_beside(fit: Fit, k: int, at: float) -> tuple[np.ndarray, np.ndarray]:
     """f, f', f'' before and after cut k, continued to ``at`` (s)."""
     leaves = fit.leaves
     last, first = np.flatnonzero(leaves.stretch == k)[-1], np.flatnonzero(leaves.stretch == k + 1)[0]

@@ -72,7 +72,7 @@ def _refuse_unfit(file: str, result: Any, options: Any) -> None:
 
 def _ready(name: str, file: str, result: str, m: Mechanism, options: dict[str, Any]) -> Callable[..., Tolerances]:
     from mbsd import MechanismError
-    from mbsd.tolerancing.tolerances import asked as ready
+    from mbsd.tolerancing.tolerances import request_of as ready
 
     try:
         with loading.author_code(name), solving.model_warnings_said():

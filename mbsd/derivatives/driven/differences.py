@@ -39,11 +39,13 @@ def displace(q, v, directions_q, directions_v, some, per_size, per_speed, reach,
 
 
 @internal
-def difference(row_body, half, v, u, a, lam, jac, kac, gamma, delta, velocity, acceleration, load):
+def difference(row_body, half, ahead, behind, a, lam, velocity, acceleration, load):
     """Fill changes of J v - nu and J a - gamma (m,), and add that of -J^T lam to load (3 nb,).
 
-    v, jac (m, 6) and gamma are of the state ahead, u, kac and delta of the one behind, ``half`` / 2 is their distance.
+    ``ahead`` and ``behind``: v (3 nb,), J (m, 6) and gamma (m,) of two states; ``half`` / 2 is their distance.
     """
+    v, jac, gamma = ahead
+    u, kac, delta = behind
     for r in range(row_body.shape[0]):
         rate = 0.0
         bend = delta[r] - gamma[r]
@@ -89,9 +91,10 @@ def differ(row_body, steps, some, v, a, lam, compact, gamma, force, velocity, ac
             half = 0.5 / steps[d, k]
             for c in range(load.shape[2]):
                 load[own, k, c] = half * (force[s, c] - force[behind + s, c])
+            other = behind + s
             difference(
-                row_body, half, v[s], v[behind + s], a[k], lam[k], compact[s], compact[behind + s], gamma[s],
-                gamma[behind + s], velocity[own, k], acceleration[own, k], load[own, k],
+                row_body, half, (v[s], compact[s], gamma[s]), (v[other], compact[other], gamma[other]), a[k], lam[k],
+                velocity[own, k], acceleration[own, k], load[own, k],
             )  # fmt: skip
 
 

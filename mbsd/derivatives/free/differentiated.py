@@ -43,6 +43,10 @@ class Nodes(NamedTuple):
     free: Any
     """(T, n, f) those of Z."""
     rows: Any
+    reach: Any
+    """(T,) as in ``displace``."""
+    slots: Any
+    """(T,) places among the R nodes of which tangents are asked, -1 of others."""
 
 
 class Own(NamedTuple):
@@ -131,11 +135,13 @@ def _begin_node(nodes, k, own, scratch):
 
 
 @kernel
-def differentiate(system, loads, laws, ws, nodes, own, inertia, per_size, per_speed, reach, slots, scratch, made):
-    """Fill ``made`` for a mechanism without friction; slots (T,) are places among the R nodes, -1 of others.
+def differentiate(system, loads, laws, ws, nodes, own, inertia, per_size, per_speed, scratch, made):
+    """Fill ``made`` for a mechanism without friction.
 
-    ``inertia`` (n,); ``per_size`` (3 nb,), ``per_speed`` and ``reach`` as in ``displace``.
+    ``inertia`` (n,); ``per_size`` (3 nb,) and ``per_speed`` as in ``displace``.
     """
+    reach = nodes.reach
+    slots = nodes.slots
     way_q, way_v, bend, load, steps = scratch.way_q, scratch.way_v, scratch.bend, scratch.load, scratch.steps
     near_v, jac, gamma, force = scratch.v, scratch.compact, scratch.gamma, scratch.force
     f = nodes.free.shape[2]
@@ -180,7 +186,7 @@ def differentiate(system, loads, laws, ws, nodes, own, inertia, per_size, per_sp
             for c in range(width):
                 load[d, c] = half * (force[d, c] - force[j, c])
             difference(
-                system.row_body, half, near_v[d], near_v[j], a, lam, jac[d], jac[j], gamma[d], gamma[j],
+                system.row_body, half, (near_v[d], jac[d], gamma[d]), (near_v[j], jac[j], gamma[j]), a, lam,
                 scratch.open, bend[d], load[d],
             )  # fmt: skip
         factor_mass(free, inertia, scratch.mass)

@@ -276,10 +276,13 @@ class _Piece:
                 first = np.zeros((len(self.every), 1, self.jac.shape[1])) if begun is None else self._first(begun, own)
             position, some = self._opened(own, first)
             known = (along.t, along.q, along.v, along.a, along.lam, drives, self.fixed, self.free)
-            nodes = Nodes(*(np.ascontiguousarray(part[here]) for part in known), rows=self.rows)
-            changes = Own(position, own.velocity, own.acceleration, own.load, some)
             inside = at[(at >= begin) & (at < begin + AT_ONCE)] - begin
-            parts.append(differentiated(self.terms, nodes, changes, *per_scale, self.reach[here], inside))
+            slots = np.full(len(along.t[here]), -1)
+            slots[inside] = np.arange(len(inside))
+            held = (np.ascontiguousarray(part[here]) for part in known)
+            nodes = Nodes(*held, rows=self.rows, reach=self.reach[here], slots=slots)
+            changes = Own(position, own.velocity, own.acceleration, own.load, some)
+            parts.append(differentiated(self.terms, nodes, changes, *per_scale))
         if len(parts) == 1:
             return parts[0]
         joined_parts = zip(*parts, strict=True)
@@ -387,10 +390,8 @@ def _wide(x: np.ndarray) -> np.ndarray:
     return np.concatenate([np.zeros((*x.shape[:-1], 3)), x], axis=-1)
 
 
-def differentiated(
-    terms: Terms, nodes: Nodes, own: Own, per_size: np.ndarray, per_speed: float, reach: np.ndarray, asked: np.ndarray
-) -> Made:
-    """Return what ``differentiate`` makes; ``asked`` (R,) are the nodes of which everything is wanted."""
+def differentiated(terms: Terms, nodes: Nodes, own: Own, per_size: np.ndarray, per_speed: float) -> Made:
+    """Return what ``differentiate`` makes."""
     packed, (count, n, f), numbers = terms.packed, nodes.free.shape, len(own.load)
     rows, width = nodes.lam.shape[1], nodes.q.shape[1]
     ways, first = 2 * f + len(own.moving), f + len(own.moving)
@@ -406,15 +407,12 @@ def differentiated(
     all_ways = 2 * f + numbers
     made = Made(
         np.zeros((count, f, 2 * f)), np.zeros((count, f, numbers)),
-        *(np.zeros((all_ways, len(asked), size)) for size in (width, width, width, rows)),
+        *(np.zeros((all_ways, int((nodes.slots >= 0).sum()), size)) for size in (width, width, width, rows)),
     )  # fmt: skip
-    slots = np.full(count, -1)
-    slots[asked] = np.arange(len(asked))
     loads = pack_loads(packed) if terms.loads is None else terms.loads
     laws = pack_laws(()) if terms.laws is None else terms.laws
     differentiate(
-        packed.system, loads, laws, packed.ws, nodes, own, terms.inertia[3:], per_size, per_speed, reach, slots,
-        scratch, made,
+        packed.system, loads, laws, packed.ws, nodes, own, terms.inertia[3:], per_size, per_speed, scratch, made,
     )  # fmt: skip
     packed.specials.check()
     return made

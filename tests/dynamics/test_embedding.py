@@ -212,13 +212,13 @@ def double_rocker() -> Mechanism:
 
 def test_coordinates_change_where_others_are_better(monkeypatch: pytest.MonkeyPatch) -> None:
     taken = []
-    original = motion.IndependentSteps._take
+    original = motion.IndependentSteps._enter
 
     def watched(self, made, *rest) -> None:
         taken.append(made.coordinates[0].body)
         original(self, made, *rest)
 
-    monkeypatch.setattr(motion.IndependentSteps, "_take", watched)
+    monkeypatch.setattr(motion.IndependentSteps, "_enter", watched)
     independent, reference = both(double_rocker(), 2.0, tolerance=1e-11)
     agree(independent, reference, close=1e-5)
     assert len(set(taken)) > 1, "no other coordinate was taken"

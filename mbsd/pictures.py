@@ -27,7 +27,7 @@ class Picture(Suggesting):
 
     ax: Axes
     own: bool
-    """Whether the figure was made for this drawing; if not, its owner shows it."""
+    """True if the figure was made for this drawing; if not, its owner shows it."""
 
     @property
     def figure(self) -> Figure:

@@ -44,7 +44,7 @@ class _Kernel(CPUDispatcher):
 
     targetdescr = GENERIC
     apart = False
-    """Whether callers call it where it stands and do not take its code in."""
+    """True if callers call it where it stands and do not take its code in."""
 
     def enable_caching(self) -> None:
         """Keep what is compiled."""

@@ -107,7 +107,7 @@ def tell_of_damage(path: str, reason: str) -> None:
 SHIPPED = Path(__file__).parent.parent / "kernels"
 """Folders as in mbsd/compiling/kernel_cache.py; there is none in a clone, nor in a wheel without kernels."""
 MADE_FOR = SHIPPED / "made_for.json"
-"""What it was compiled for, as :func:`here` says it."""
+"""Processor and Python that a kernel was compiled for, as :func:`here` returns them."""
 
 
 def here() -> dict[str, str]:

@@ -74,7 +74,7 @@ class Deal:
         self._surveyed = -math.inf
         self._answered = self._without = time.monotonic()
         self._lost_one = False
-        """Whether a worker that was fit has gone; whoever keeps it may start it again."""
+        """True if a worker that was fit has gone; whoever keeps it may start it again."""
         self._reported = ""
         """What was said of the waiting."""
 

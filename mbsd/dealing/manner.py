@@ -47,7 +47,7 @@ class Manner:
     unknown: float | None = None
     """The same of one whose pace is not; no other than that if None."""
     endless: bool = False
-    """Whether workers that are all silent may be so for ever."""
+    """True if workers that are all silent may be so for ever."""
     times: float = 10.0
     """Multiple of what was expected: a worker that is silent for longer counts as stalled."""
     grace: float = 0.0
@@ -57,9 +57,9 @@ class Manner:
     copies: int = 2
     """Workers that do the same order at most, when others have nothing to do."""
     threads: bool = False
-    """Whether a worker does as many groups at a time as it has threads."""
+    """True if a worker does as many groups at a time as it has threads."""
     first_alone: bool = False
-    """Whether others wait until the first order is done, which compiles what they load."""
+    """True if others wait until the first order is done, which compiles what they load."""
 
 
 class Voice(NamedTuple):
@@ -81,7 +81,7 @@ class Voice(NamedTuple):
     without: str
     """No worker is there that can do it now."""
     one_comes: str
-    """What is waited for then."""
+    """What the dealer waits for then, in words."""
     lied: str
     failed: str
     left_out: str

@@ -67,7 +67,7 @@ class OfBodies:
 
     by_label: dict[str, OfMotions]
     accelerations: bool
-    """Whether any of it reads accelerations."""
+    """True if any of it reads accelerations."""
 
 
 def of_bodies(m: Model, of: Any) -> OfBodies | None:

@@ -364,7 +364,7 @@ def _never(dyn, scratch, state, out, settings, genevas, end, steps, before, afte
 
 
 index = alternatives({Embedding: _index_here}, _never)
-"""``through`` by the usual integrator, from jump to jump of Genevas; never in reference coordinates."""
+"""``advance_past_jumps`` by the usual integrator, from jump to jump of Genevas; never in reference coordinates."""
 
 
 @kernel

@@ -220,7 +220,7 @@ def _exchange(dyn, scratch, repeated, t, q):
 
 @internal
 def _any_spare(repeated):
-    """Whether a row could hold that does not."""
+    """Return True if a row could hold that does not."""
     spare = False
     for i in range(repeated.place.shape[0]):
         spare = spare or repeated.number[i, HELD] == 0.0
@@ -237,7 +237,7 @@ def look(dyn, scratch, repeated, state, steps):
 
 @lazy(bool)
 def _opens(dyn, scratch, repeated, out, first, end):
-    """Whether a row that did not hold once is open in one of the outputs ``first`` to ``end`` (left out)."""
+    """Return True if a row that did not hold once is open in one of the outputs ``first`` to ``end`` (left out)."""
     open_now = False
     for k in range(first, end):
         measure(dyn, scratch, out.t[k], out.y[k, 0])
@@ -250,7 +250,7 @@ def _opens(dyn, scratch, repeated, out, first, end):
 
 @lazy(int)
 def _again(dyn, scratch, state, out, settings, repeated, end, steps, before, after, method):
-    """``through``, with a look at the rows now and then."""
+    """``advance_past_jumps``, with a look at the rows now and then."""
     hold_independent(dyn, repeated)
     status = PAUSED
     taken = 0
@@ -283,14 +283,14 @@ def _go_again(dyn, scratch, state, out, settings, repeated, end, steps, before, 
 
 
 again = alternatives({Embedding: _never}, _go_again)
-"""``through``, with a look at the rows now and then; never in independent coordinates."""
+"""``advance_past_jumps``, with a look at the rows now and then; never in independent coordinates."""
 opens = alternatives({Embedding: _no_row_opens}, _opens_where)
-"""Whether a row that did not hold once is open in one of the outputs ``first`` to ``end`` (left out)."""
+"""True if a row that did not hold once is open in one of the outputs ``first`` to ``end`` (left out)."""
 
 
 @internal
 def _adds(repeated, i, count):
-    """Whether row i of jac adds something to the ``count`` rows of order[0]; then it becomes what it adds, of length 1.
+    """Return True if row i of jac adds to the ``count`` rows of order[0]; it becomes what it adds, of length 1.
 
     Gram-Schmidt, done twice for rounding.
     """

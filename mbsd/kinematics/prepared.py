@@ -39,7 +39,7 @@ class Prepared:
     blocks: Blocks
     """What of it no closed form covers."""
     proved: bool = False
-    """Whether joints that repeat others are sure to hold where these do not."""
+    """True if joints that repeat others are sure to hold where these do not."""
 
     @property
     def route(self) -> str:

@@ -93,7 +93,7 @@ class Body(Suggesting):
     length: float | None = None
     """Length of a bar (m); None for other bodies."""
     mass_given: bool = False
-    """Whether its mass was given when it was added; one of 0 makes it massless on purpose."""
+    """True if its mass was given when it was added; one of 0 makes it massless on purpose."""
     derived: frozenset[str] = frozenset()
     """Which of a bar's ``com`` and ``inertia`` follow from its length and mass, as of a uniform slender rod. They
     follow every mass that is set; setting them ends that."""

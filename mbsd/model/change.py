@@ -214,9 +214,9 @@ class Argument(NamedTuple):
     types: tuple[Any, ...]
     """That it may have; one that is not known where the function stands is text."""
     needed: bool
-    """Whether it has no default."""
+    """True if it has no default."""
     several: bool
-    """Whether it stands for any number of arguments, as ``*bodies`` does."""
+    """True if it stands for any number of arguments, as ``*bodies`` does."""
 
 
 @lru_cache(maxsize=512)

@@ -1,7 +1,5 @@
 """Forces: their data, and the registry of kinds.
 
-Forces: their data, and the registry of kinds.
-
 A force is one scalar element or several, and the magnitude of an element is a sum of terms. An element measures a
 scalar x of two markers and acts along it, so that a positive magnitude F makes x grow:
 
@@ -90,7 +88,7 @@ class Interaction:
     crank: str | None = None
     with_states: bool = False
     phased: bool = False
-    """Whether the constant of a mesh that the start pose decides is added to its first number."""
+    """True if the constant of a mesh that the start pose decides is added to its first number."""
 
 
 @dataclass(frozen=True)
@@ -199,11 +197,11 @@ class ForceKind(ByName):
     oil: Callable[[Force], OilCylinder] | None = None
     """The cylinder of oil that its effort and its states come from, if they do."""
     outside: bool = False
-    """Whether it is a load from outside, to which nothing in the mechanism feels the opposite."""
+    """True if it is a load from outside, to which nothing in the mechanism feels the opposite."""
     of_reactions: bool = False
-    """Whether it is friction, which comes from the reaction of a joint; see mbsd/equations/joint_friction.py."""
+    """True if it is friction, which comes from the reaction of a joint; see mbsd/equations/joint_friction.py."""
     on_bodies: bool = False
-    """Whether it acts on bodies as a whole, and its markers are no places."""
+    """True if it acts on bodies as a whole, and its markers are no places."""
     look: str = ""
     """What pictures of solids draw for it: one of ``LOOKS`` in mbsd/model/joint.py."""
     motor: str = ""
@@ -211,7 +209,7 @@ class ForceKind(ByName):
     sign: str = ""
     """Its sign in drawings, if not that of its first element: see mbsd/drawing/symbols/loads.py."""
     saved: bool = True
-    """Whether a file can hold its params; a Python function cannot be saved."""
+    """True if a file can hold its params; a Python function cannot be saved."""
     also: Mapping[str, str] = field(default_factory=dict)
     """Arguments of other methods that add one, by the names they have in ``add``: change() takes them as well."""
     add: Callable[..., Any] | None = field(default=None, init=False, compare=False)
@@ -310,7 +308,7 @@ class CrankCycle:
     height: Callable[[np.ndarray], np.ndarray] | None
     """Height of the gas (m) at angles after the firing, by crank and rod; None where the pressure needs none."""
     burns: bool
-    """Whether heat is released at these heights."""
+    """True if heat is released at these heights."""
 
 
 def marker_place(marker: Marker, masses: Masses, q: np.ndarray) -> np.ndarray:

@@ -105,7 +105,7 @@ class JointKind(ByName):
     sign: str = ""
     """The kind whose sign it has in drawings; its own if empty. See mbsd/drawing/symbols."""
     saved: bool = True
-    """Whether a file can hold its params; a Python function cannot be saved."""
+    """True if a file can hold its params; a Python function cannot be saved."""
     add: Callable[..., Any] | None = field(default=None, init=False, compare=False)
     """The function ``add(m, name, ...)`` that adds one of this kind, with its arguments checked; see :meth:`adds`."""
 

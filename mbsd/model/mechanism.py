@@ -78,7 +78,7 @@ class Model(Suggesting):
     )
 
     findings_told = False
-    """Whether suspicious units were reported; see mbsd/analyses/suspicious_units.py."""
+    """True if suspicious units were reported; see mbsd/analyses/suspicious_units.py."""
 
     def __post_init__(self) -> None:
         new_name(self, self.name, "mechanism")

@@ -59,7 +59,7 @@ class ForceView(Suggesting):
     """(T,) its size with a sign (N or N m): positive where it makes the value grow, or acts in its direction; of a
     contact or tyre the normal force, without friction. None where neither value nor direction is one."""
     several: bool = False
-    """Whether it acts on several bodies, none of which is the second."""
+    """True if it acts on several bodies, none of which is the second."""
 
     def on(self, body: str) -> Action:
         """Return its action on the body of this name. Raises ModelError for one that does not feel it."""

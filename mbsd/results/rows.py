@@ -87,7 +87,7 @@ class Asked:
     shown: np.ndarray
     """What their rows are to show."""
     extra: np.ndarray
-    """Whether nobody asked for it but a jump."""
+    """True if nobody asked for it but a jump."""
     jumps: tuple[tuple[float, float, tuple[str, ...]], ...]
 
     def rows(self, solution: Solution) -> Solution:

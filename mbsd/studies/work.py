@@ -39,7 +39,7 @@ class Result(NamedTuple):
     values: dict[str, float | int | bool] | None
     reason: str | None = None
     passing: bool = False
-    """Whether the machine failed, not the point."""
+    """True if the machine failed, not the point."""
 
 
 class Chunk(NamedTuple):

@@ -43,7 +43,7 @@ class Optimum(Suggesting):
     gradient: dict[str, float]
     """Slopes of the objective by each number at the end."""
     met: bool
-    """Whether all conditions hold and scipy says that it ended at an optimum."""
+    """True if all conditions hold and scipy says that it ended at an optimum."""
     message: str
     """scipy's."""
     evaluations: int

@@ -59,7 +59,7 @@ class Search:
     designs: Designs
     target: Target
     free_shift: bool
-    """Whether the last number of a vector is the time (s) by which the points' times are shifted."""
+    """True if the last number of a vector is the time (s) by which the points' times are shifted."""
     least_transmission: float
     """rad"""
     generations: int

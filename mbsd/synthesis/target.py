@@ -22,13 +22,13 @@ class Target:
     times: np.ndarray | None
     """(N,) at which each is reached (s); None: whenever it is nearest."""
     closed: bool
-    """Whether the points are a closed curve that is the whole path."""
+    """True if the points are a closed curve that is the whole path."""
     returns: bool
-    """Whether the path comes back to its start at the end of the motion."""
+    """True if the path comes back to its start at the end of the motion."""
     span: tuple[float, float]
     """The motion's first and last time (s)."""
     ordered: bool = False
-    """Whether the points are reached one after the other."""
+    """True if the points are reached one after the other."""
 
     @property
     def extent(self) -> float:

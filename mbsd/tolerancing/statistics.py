@@ -124,7 +124,7 @@ class Halving:
     std: np.ndarray
     within: np.ndarray
     again: bool
-    """Whether all machines were solved again."""
+    """True if all machines were solved again."""
 
 
 def curved(values: np.ndarray, linear_std: float) -> bool:

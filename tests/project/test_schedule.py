@@ -14,6 +14,7 @@ from shared.stage.paths import ROOT, mechanism_names
 from tests.mechanisms.test_mechanisms import SLOW
 from tests.running import order
 from tests.running.order import group_of, place_of
+from tests.running.samples import SAMPLES
 
 TESTS = ROOT / "tests"
 
@@ -57,6 +58,14 @@ def test_the_recorded_groups_exist_and_are_long() -> None:
         assert (ROOT / group.partition("[")[0]).is_file(), f"{group} is gone; take it out of tests/running/seconds.json"
         assert "[" not in group or group.partition("[")[2].rstrip("]") in mechanism_names(), group
         assert seconds >= order.LONG
+
+
+@pytest.mark.parametrize("test", SAMPLES)
+def test_what_make_test_samples_exists(test: str) -> None:
+    file, _, name = test.partition("::")
+    assert re.search(rf"^def {name}\b", (ROOT / file).read_text(), re.M), (
+        f"{test} is gone; mend tests/running/samples.py"
+    )
 
 
 def test_seconds_of_long_groups_are_recorded(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

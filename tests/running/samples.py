@@ -54,7 +54,7 @@ SAMPLES: dict[str, tuple[str, ...]] = {
     "tests/project/test_injection.py::test_a_stage_refuses_a_link_in_place_of_a_folder_of_results": (
         *("four_bar", "four_bar/frames"),
     ),
-    "tests/render/film/test_scene_framing.py::"
+    "tests/render/film/test_framing.py::"
     "test_every_body_that_moves_stays_in_the_frame_over_the_whole_film_and_fills_it": ("*-mount1",),
     "tests/render/film/test_writing.py::test_words_have_a_contrast_of_four_and_a_half_to_whatever_is_behind_them": (
         *("*-behind0", "*-behind3"),

@@ -29,7 +29,7 @@ class Subject:
     truth: Callable[[Solution], list[str]] | None = None
     """What a solution gets wrong, judged without the solver."""
     possible: bool | None = None
-    """Whether the motion exists; None where that is not known, as within rounding of a change point."""
+    """True if the motion exists; None where that is not known, as within rounding of a change point."""
     distance: float = 1.0
     """Least distance from a change point or a toggle, in sizes, as far as known."""
     traits: frozenset[str] = field(default_factory=frozenset)
@@ -53,7 +53,7 @@ class Family:
     build: Builder
     weight: float = 1.0
     example: bool = False
-    """Whether it is one of the solver's registries; all of these together have a share of their own."""
+    """True if it is one of the solver's registries; all of these together have a share of their own."""
 
 
 FAMILIES: dict[str, Family] = {}

@@ -60,7 +60,7 @@ class Stretch:
     nodes: np.ndarray
     """(T,) whether it is one of the nodes of whole steps, the first and the last among them."""
     solved: bool = True
-    """Whether accelerations and multipliers are known; else accelerations are about what they will be."""
+    """True if accelerations and multipliers are known; else accelerations are estimates."""
     own: Left | None = None
     """How the equations change with P numbers at the held motion, (P, T, ...), where that is known."""
 

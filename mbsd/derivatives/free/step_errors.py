@@ -14,7 +14,7 @@ from mbsd.derivatives.free.mesh import refined
 ENOUGH = 5e-6
 """Error of tangents, as part of the largest, beyond which nodes come closer."""
 AIMED = 1e-6
-"""What they then come to."""
+"""Error at which they then aim, as part of the largest tangent."""
 OF_KINKS = 0.05
 """Part of these where contacts by penalty have kinks, of which the estimate knows too little."""
 MOST, PATIENCE = 14, 6

@@ -47,7 +47,7 @@ class Near:
 
     number: Number
     size: float
-    """What steps of the number are parts of."""
+    """Size of the number, of which steps are parts."""
     mass: np.ndarray
     """(nb,)"""
     moment: np.ndarray
@@ -65,7 +65,7 @@ class Near:
     begun: tuple[np.ndarray, np.ndarray]
     """(3 nb,) q' and v' at the start."""
     replaced: bool
-    """Whether joints, forces or traced points are made anew for another value."""
+    """True if joints, forces or traced points are made anew for another value."""
 
     @property
     def inertia(self) -> np.ndarray:

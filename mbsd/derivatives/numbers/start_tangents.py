@@ -33,15 +33,15 @@ class StartTangents:
         packed = ready.packed
         self.m, self.packed = m, packed
         self.none = np.zeros_like(ready.initial.q), np.zeros_like(ready.initial.q)
-        """What changes nothing."""
+        """Tangents q', v' of a number that changes nothing."""
         self.q, self.v, self.drive = ready.initial.q, ready.initial.v, drive_at(packed, ready.start)
         self.nu = np.zeros(len(packed.ws.phi))
         self.nu[packed.driver_rows :] = self.drive[1:, 1]
         self.starts, self.velocities = dict(m.starts), dict(m.velocities)
         self.still = not m.velocities and not self.nu.any()
-        """Whether nothing moves at the start, whatever the numbers are."""
+        """True if nothing moves at the start, for any values of the numbers."""
         self.placed = any(velocity.place is not None for velocity in m.velocities.values())
-        """Whether the velocity of a place is given, which turns with its body."""
+        """True if a velocity is given at a point of a body; it changes as the body turns."""
         self.speed = self.v.reshape(-1, 3)[packed.system.row_body].reshape(-1, 6)
         """(m, 6) velocities of both bodies of each row."""
         self.phi, self.rate = self._evaluated(packed, self.q)

@@ -144,10 +144,10 @@ class Variant:
     terms: Terms
     traces: dict[str, Any]
     same_places: bool
-    """Whether all places, lengths, angles and laws of drivers are those of the motion."""
+    """True if all places, lengths, angles and laws of drivers are those of the motion."""
     same_masses: bool
     same_loads: bool
-    """Whether all loads have the numbers that they have in the motion."""
+    """True if all loads have the numbers that they have in the motion."""
     start: Any = None
     """q, v (3 nb,) at the start, where that changes."""
     events: Mapping[str, Event] = field(default_factory=dict)

@@ -32,7 +32,7 @@ class Sides:
     """K values of a number around its own."""
 
     size: float
-    """What steps of the number are parts of."""
+    """Size of the number, of which steps are parts."""
     away: np.ndarray
     """(K,) from its own, in its unit."""
     weights: np.ndarray
@@ -78,7 +78,7 @@ class BothSides:
         """(g, 14) slopes of the numbers of the groups by a number that changes places, or (g, 21) of their rows."""
         self.set_steps({p: TINY for p in range(len(numbers)) if p not in self.light})
         self.sizes = [self.every[p].size if near is None else near.size for p, near in enumerate(self.near)]
-        """What steps of numbers are parts of."""
+        """Sizes of the numbers, of which steps are parts."""
 
     def begun(self, part: int) -> np.ndarray:
         """(P, 3 nb) q' at the start; v' as ``part`` 1."""

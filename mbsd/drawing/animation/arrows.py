@@ -32,9 +32,9 @@ class Arrow:
     vector: np.ndarray
     """(T, 2) in its own unit, world axes."""
     middle: bool = False
-    """Whether ``place`` is its middle instead."""
+    """True if ``place`` is the middle of the arrow, not its tail."""
     weight: bool = False
-    """Whether it is the weight of a body, one of the forces."""
+    """True if the force is the weight of a body."""
 
     @property
     def size(self) -> np.ndarray:
@@ -182,11 +182,11 @@ class Scale:
 
     unit: str
     largest: float
-    """What is drawn at full length (in ``unit``)."""
+    """Magnitude of an arrow of full length (in ``unit``)."""
     reference: float
     """A round number below, for the legend."""
     cut: bool
-    """Whether some arrow is longer than it is drawn."""
+    """True if some arrow is longer than it is drawn."""
 
     def part(self, size: np.ndarray | float) -> np.ndarray:
         """Return the fraction of the full length, at most LONGEST."""

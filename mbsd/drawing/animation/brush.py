@@ -66,7 +66,7 @@ class Brush(Canvas):
     thin: float = 1.0
     """Factor on the widths of lines in metres: less where symbols are small."""
     remembers: bool = False
-    """Whether obstacles for names are kept."""
+    """True if obstacles for names are kept."""
 
     def _draw(
         self,

@@ -41,9 +41,9 @@ class Panel:
     box: Box
     dpi: float
     titled: bool
-    """Whether its own quantities stand above it: one of several."""
+    """True if its own quantities stand above it: one of several."""
     names: bool | str
-    """Whether there are any: those that matter, or ``"all"``."""
+    """True if there are any: those that matter, or ``"all"``."""
     trails: list[Trail]
     marks: list[Arrow | Arc] = field(init=False)
     scales: dict[str, Scale] = field(init=False)

@@ -43,7 +43,7 @@ class Embedding(NamedTuple):
     loaded: Any
     """Bodies that forces act on or read."""
     angles: bool
-    """Whether forces read the angles of bodies."""
+    """True if forces read the angles of bodies."""
 
 
 class EmbeddingScratch(NamedTuple):

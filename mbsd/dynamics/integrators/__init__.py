@@ -1,1 +1,1 @@
-"""Integrators, one file a method. All step along :func:`mbsd.dynamics.reference.acceleration.derivative`."""
+"""Integrators, one file a method. All step by the operations of mbsd/dynamics/formulation.py."""

@@ -51,19 +51,19 @@ class Integrator:
     matrices: tuple[int, int] = (0, 0)
     """Full matrices it needs, and their rows for each coordinate (see mbsd/dynamics/integrators/full_matrix.py)."""
     independent: bool = False
-    """Whether ``advance`` integrates independent coordinates as well: ``dyn`` is then an Embedding."""
+    """True if ``advance`` integrates independent coordinates as well: ``dyn`` is then an Embedding."""
     general: bool = False
     """True if ``advance`` steps q' = N(q) v of any formulation; other methods step q' = v."""
     refusal: Callable[[Dynamics], str | None] = lambda dynamics: None
     """Why this method cannot simulate a mechanism, or None."""
     meets_switches: bool = False
-    """Whether its steps end where contacts by penalty begin, so that it knows how fast they approach then."""
+    """True if its steps end where contacts by penalty begin, so that it knows how fast they approach then."""
     package: str = ""
     """Another library's, by the name it is imported by; needed for this method alone."""
 
     @property
     def installed(self) -> bool:
-        """Whether this method can run here."""
+        """Return True if this method can run here."""
         if not self.package:
             return True
         try:

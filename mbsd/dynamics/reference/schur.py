@@ -78,7 +78,7 @@ def schur_factors(sequence: Schur) -> SchurFactors:
 
 @inlined
 def padded(schur, k):
-    """Whether a block has no row, like that of an open contact: nothing of S meets it."""
+    """Return True if a block has no row, like that of an open contact: nothing of S meets it."""
     return schur.rows[k, 0] < 0 and schur.rows[k, 1] < 0
 
 

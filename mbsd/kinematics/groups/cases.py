@@ -167,7 +167,7 @@ def _short(case, square):
 
 
 too_short = alternatives({PoseAlone: _never_short, AlongLaws: _short, PerCoordinate: _never_short})
-"""Whether a squared distance counts as zero."""
+"""True if a squared distance counts as zero."""
 
 
 @inlined

@@ -59,7 +59,7 @@ class Parts(NamedTuple):
     groups: Groups
     blocks: Blocks
     proved: bool
-    """Whether joints that repeat others are sure to hold."""
+    """True if joints that repeat others are sure to hold."""
 
 
 def plan_parts(packed: Packed, q0: np.ndarray, pattern: np.ndarray, kept: np.ndarray) -> Parts | None:

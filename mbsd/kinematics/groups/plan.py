@@ -120,7 +120,7 @@ class Recipe(NamedTuple):
     bodies: tuple[int, ...]
     links: tuple[Link, ...]
     by_letter: bool
-    """Whether ``make`` takes its links by their letters."""
+    """True if ``make`` takes its links by their letters."""
 
     def build(self, at: Places, links: Sequence[Link]) -> Made | None:
         """Return the group, from links that stand for its own."""

@@ -61,7 +61,7 @@ class SegmentTable:
     foot: Segment
     """From the ankle to the ball of the foot (Winter), or from heel to toe (de Leva)."""
     from_heel: bool
-    """Whether the foot's reference line is that from heel to toe."""
+    """True if the foot's reference line is that from heel to toe."""
     shank: tuple[Segment, ...]
     thigh: tuple[Segment, ...]
     trunk: tuple[Segment, ...]

@@ -1,1 +1,1 @@
-"""Kinds of forces, one file a kind; kind.py says what they are made of."""
+"""Kinds of forces, in chapters; mbsd/model/force.py says what a kind is made of."""

@@ -1,4 +1,4 @@
-"""Motion laws for drivers, one file a law.
+"""Motion laws for drivers: formulas, splines, curves, functions of the user.
 
 A law takes times (T,) and returns (T, 3): value, rate, acceleration, in rad or m by seconds.
 """

@@ -66,7 +66,7 @@ class Fit:
     """Size of what could not be met, of f or, of a driver, of f'', and where (s)."""
     missed_at: float = 0.0
     overrun: bool = False
-    """Whether it took too many calls to meet all of it."""
+    """True if it took too many calls to meet all of it."""
 
 
 def fit(

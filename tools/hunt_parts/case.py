@@ -73,12 +73,12 @@ def outcome_of(subject: Subject, solids: bool = True, engraved: bool = False) ->
 
 def moved(subject: Subject, steps: int = STEPS) -> Solution:
     """The motion, a few turns of it at most. Raises MechanismError where it cannot move so."""
-    from mechanisms.stages.solve.solving import swept_closely
+    from mechanisms.stages.solve.solving import simulated_closely, swept_closely
 
     duration = min(subject.duration, MOST * (subject.turn or subject.duration))
     if subject.driven:
         return swept_closely(subject.m, np.linspace(0.0, duration, steps + 1))
-    return subject.m.simulate(duration, steps=steps, event_rows=True)
+    return simulated_closely(subject.m, duration, steps)
 
 
 def parts_of(m: Mechanism, solution: Solution, solids: bool = True, engraved: bool = True) -> Outcome:

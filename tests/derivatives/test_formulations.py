@@ -112,8 +112,8 @@ def test_changes_of_a_symmetric_top_are_those_of_its_closed_form() -> None:
         of_start("w_x", v=3),
         of_start("w_z", v=5),
     ]
-    found = run_tangents(run_of(flight, START, np.concatenate([np.zeros(3), w])), t, [0.3, 0.7, t], every)
-    assert found.error < 1e-5
+    tangents = run_tangents(run_of(flight, START, np.concatenate([np.zeros(3), w])), t, [0.3, 0.7, t], every)
+    assert tangents.error < 1e-5
     step = 1e-30j
     for row, time in enumerate([0.3, 0.7, t]):
         exact = [
@@ -123,11 +123,11 @@ def test_changes_of_a_symmetric_top_are_those_of_its_closed_form() -> None:
             symmetric_top(time, e, w + np.array([0, 0, step]), inertia),
         ]
         for p, (attitude, rates) in enumerate(exact):
-            assert np.abs(found.q[p, row, 3:] - attitude.imag / 1e-30).max() < 1e-8
-            assert np.abs(found.v[p, row, 3:] - rates.imag / 1e-30).max() < 1e-8
-    size = (found.q[:, :, 3:] * found.y[:, 0, 6:]).sum(axis=2)
+            assert np.abs(tangents.q[p, row, 3:] - attitude.imag / 1e-30).max() < 1e-8
+            assert np.abs(tangents.v[p, row, 3:] - rates.imag / 1e-30).max() < 1e-8
+    size = (tangents.q[:, :, 3:] * tangents.y[:, 0, 6:]).sum(axis=2)
     assert np.abs(size).max() < 1e-9  # Euler parameters stay a unit
-    assert np.allclose(found.end_q, found.q[:, -1], rtol=0.0, atol=1e-12)
+    assert np.allclose(tangents.end_q, tangents.q[:, -1], rtol=0.0, atol=1e-12)
 
 
 def bouncing(flight: Flight, q: np.ndarray, v: np.ndarray, events: Any = None) -> Run:
@@ -156,7 +156,7 @@ def test_a_bounce_of_a_point_is_that_of_its_closed_form() -> None:
         Parameter("restitution", np.zeros(7), np.zeros(6), step=h, contacts=sides),
         Parameter("gravity", np.zeros(7), np.zeros(6), *(pulled(flight, gravity + by) for by in (-h, h)), h),
     ]
-    found = run_tangents(run, end, [0.2, 0.8, end], every)
+    tangents = run_tangents(run, end, [0.2, 0.8, end], every)
 
     def flies(t: float, h: complex, e: complex, g: complex) -> tuple[complex, complex]:
         met = np.sqrt(2 * h / g)
@@ -164,13 +164,13 @@ def test_a_bounce_of_a_point_is_that_of_its_closed_form() -> None:
             return h - g * t**2 / 2, -g * t
         return e * g * met * (t - met) - g * (t - met) ** 2 / 2, e * g * met - g * (t - met)
 
-    [met] = found.events
+    [met] = tangents.events
     assert met.moved == pytest.approx([1 / np.sqrt(2 * height * gravity), 0.0, -met.t / 2 / gravity], abs=1e-8)
-    for row, t in enumerate(found.t):
+    for row, t in enumerate(tangents.t):
         for p, by in enumerate(np.eye(3) * 1e-30j):
             z, w = flies(t, *(np.array([height, restitution, gravity]) + by))
-            assert found.q[p, row, 2] == pytest.approx(z.imag / 1e-30, abs=1e-7)
-            assert found.v[p, row, 2] == pytest.approx(w.imag / 1e-30, abs=1e-7)
+            assert tangents.q[p, row, 2] == pytest.approx(z.imag / 1e-30, abs=1e-7)
+            assert tangents.v[p, row, 2] == pytest.approx(w.imag / 1e-30, abs=1e-7)
 
 
 @pytest.mark.parametrize(("restitution", "rates", "end"), [(0.8, RATES, 1.5), (0.0, SLOW, 0.9)])
@@ -185,20 +185,20 @@ def test_changes_beyond_impacts_of_a_turning_body_are_those_of_whole_runs(
         of_start("w_y", v=4),
         Parameter("corner", np.zeros(7), np.zeros(6), *(cornered(flight, CORNER + by * side) for by in (-h, h)), h),
     ]
-    found = run_tangents(run, end, np.linspace(0.0, end, 91), every)
-    assert len(found.events) >= 1
+    tangents = run_tangents(run, end, np.linspace(0.0, end, 91), every)
+    assert len(tangents.events) >= 1
     z, w = np.eye(7)[2], np.eye(6)[4]
     truth = [
         slope(lambda by: end_of(CORNER, restitution, START + by * z, rates, end), 2e-4),
         slope(lambda by: end_of(CORNER, restitution, START, rates + by * w, end), 2e-4),
         slope(lambda by: end_of(CORNER + by * side, restitution, START, rates, end), 2e-4),
     ]
-    assert np.abs(np.concatenate([found.end_q, found.end_v], axis=1) - truth).max() < 1e-5 * np.abs(truth).max()
+    assert np.abs(np.concatenate([tangents.end_q, tangents.end_v], axis=1) - truth).max() < 1e-5 * np.abs(truth).max()
     if restitution == 0.0:
-        on_plane = [row for row, y in enumerate(found.y) if abs(point_of(y[0, 3:], CORNER)[2]) < 1e-10]
+        on_plane = [row for row, y in enumerate(tangents.y) if abs(point_of(y[0, 3:], CORNER)[2]) < 1e-10]
         assert len(on_plane) > 3
         for row in on_plane:  # the corner stays where it is while numbers of the start change
-            moved = [point_of(found.y[row, 0, 3:] + by * found.q[0, row], CORNER)[2] for by in (1e-6, -1e-6)]
+            moved = [point_of(tangents.y[row, 0, 3:] + by * tangents.q[0, row], CORNER)[2] for by in (1e-6, -1e-6)]
             assert abs(moved[0] - moved[1]) < 1e-13
 
 
@@ -213,8 +213,8 @@ def test_functions_of_the_user_get_points_of_an_added_formulation() -> None:
     point, flight = np.array([-0.1, 0.2, 0.3]), Flight(DOP853, INERTIA, CORNER)
     run = bouncing(flight, START, RATES, watched(point, fallen.address, ends=True))
     z, w = np.eye(7)[2], np.eye(6)[4]
-    found = run_tangents(run, 1.5, [0.1, 0.2], [of_start("z", q=2), of_start("w_y", v=4)])
-    assert point_of(found.end.y[0, 3:], point)[2] == pytest.approx(0.7, abs=1e-11)
+    tangents = run_tangents(run, 1.5, [0.1, 0.2], [of_start("z", q=2), of_start("w_y", v=4)])
+    assert point_of(tangents.end.y[0, 3:], point)[2] == pytest.approx(0.7, abs=1e-11)
 
     def ends(by: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         own = bouncing(Flight(DOP853, INERTIA, CORNER), START + by * q, RATES + by * v, run.contacts.events)
@@ -222,9 +222,9 @@ def test_functions_of_the_user_get_points_of_an_added_formulation() -> None:
         return np.concatenate([[end.clock[TIME]], end.y[0, 3:], end.y[1, 3:9]])
 
     truth = np.array([slope(lambda by: ends(by, z, 0 * w), 2e-4), slope(lambda by: ends(by, 0 * z, w), 2e-4)])
-    [met] = found.events
+    [met] = tangents.events
     assert np.abs(met.moved - truth[:, 0]).max() < 1e-7
-    assert np.abs(np.concatenate([found.end_q, found.end_v], axis=1) - truth[:, 1:]).max() < 1e-6
+    assert np.abs(np.concatenate([tangents.end_q, tangents.end_v], axis=1) - truth[:, 1:]).max() < 1e-6
 
 
 @at_address(SIGNATURE)
@@ -244,15 +244,15 @@ def test_actions_of_the_user_move_points_and_are_differentiated() -> None:
         return bouncing(Flight(DOP853, INERTIA, CORNER), q, v, events)
 
     z, w = np.eye(7)[2], np.eye(6)[4]
-    found = run_tangents(thrown(START, RATES), end, [], [of_start("z", q=2), of_start("w_y", v=4)])
-    assert found.events
+    tangents = run_tangents(thrown(START, RATES), end, [], [of_start("z", q=2), of_start("w_y", v=4)])
+    assert tangents.events
 
     def ends(by: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         state = run_tangents(thrown(START + by * q, RATES + by * v), end, [], []).end
         return np.concatenate([state.y[0, 3:], state.y[1, 3:9]])
 
     truth = np.array([slope(lambda by: ends(by, z, 0 * w), 2e-4), slope(lambda by: ends(by, 0 * z, w), 2e-4)])
-    assert np.abs(np.concatenate([found.end_q, found.end_v], axis=1) - truth).max() < 1e-6 * np.abs(truth).max()
+    assert np.abs(np.concatenate([tangents.end_q, tangents.end_v], axis=1) - truth).max() < 1e-6 * np.abs(truth).max()
 
 
 class Skate(NamedTuple):
@@ -300,7 +300,7 @@ def test_more_places_are_reached_than_there_are_velocities() -> None:
     start = start_state(np.array([[0, 0, 0, 0.2, 0.3, 0.4], [0, 0, 0, 0.6, 1.1, 0.0]]), 1, 0.0)
     every = np.full((2, 6), 1e-12)
     settings = Settings(every, 1e-12, every.copy(), 0.2, 1e-14, 1e-3, np.zeros(0))
-    found = run_tangents(
+    tangents = run_tangents(
         Run(DOP853, skate, scratch, settings, start, 2),
         end,
         [0.4, end],
@@ -322,7 +322,7 @@ def test_more_places_are_reached_than_there_are_velocities() -> None:
     for row, t in enumerate([0.4, end]):
         for p, by in enumerate(np.eye(6) * 1e-30j):
             exact = glides(t, numbers + by).imag / 1e-30
-            assert np.abs(np.concatenate([found.q[p, row], found.v[p, row]]) - exact).max() < 1e-9
+            assert np.abs(np.concatenate([tangents.q[p, row], tangents.v[p, row]]) - exact).max() < 1e-9
 
 
 def resting(flight: Flight) -> np.ndarray:
@@ -333,8 +333,8 @@ def resting(flight: Flight) -> np.ndarray:
 def test_starts_in_contact_have_derivatives_that_keep_it_alone() -> None:
     flight = Flight(DOP853, INERTIA, CORNER, 0.0)
     at, still = resting(flight), np.zeros(6)
-    found = run_tangents(bouncing(flight, at, still), 0.1, [], [of_start("x", q=0)])
-    assert found.end_q[0] == pytest.approx(np.eye(7)[0], abs=1e-9)
+    tangents = run_tangents(bouncing(flight, at, still), 0.1, [], [of_start("x", q=0)])
+    assert tangents.end_q[0] == pytest.approx(np.eye(7)[0], abs=1e-9)
     with pytest.raises(ModelError, match="no derivative by 'z': it opens contact 0"):
         run_tangents(bouncing(flight, at, still), 0.1, [], [of_start("z", q=2)])
     with pytest.raises(ModelError, match="begins with an impact"):
@@ -387,7 +387,7 @@ def test_the_plane_is_the_case_where_rates_are_velocities() -> None:
     stiffer = tuple(shared(beside(stiffness=2.0 + by)) for by in (-h, h))
     livelier = tuple(contacts(beside(restitution=0.4 + by)) for by in (-h, h))
     faster = (beside(omega=-1.0 + h).initial.v - beside(omega=-1.0 - h).initial.v)[3:] / (2 * h)
-    found = run_tangents(
+    tangents = run_tangents(
         Run(DOP853, ready.dynamics, scratch, settings, start, width - 3, contacts(ready)),
         end,
         [end],
@@ -397,9 +397,9 @@ def test_the_plane_is_the_case_where_rates_are_velocities() -> None:
             Parameter("omega", none, faster),
         ],
     )
-    assert len(found.events) >= 1
+    assert len(tangents.events) >= 1
     numbers = ["k.stiffness", "end.restitution", "rod.moving.omega"]
     known = door().sensitivities(["rod.theta", "rod.omega"], numbers, times=[0.0, end])
-    assert found.q[:, -1, 2] == pytest.approx(known["rod.theta"][-1], rel=1e-6)
+    assert tangents.q[:, -1, 2] == pytest.approx(known["rod.theta"][-1], rel=1e-6)
     assert np.abs(known["rod.theta"][-1]).min() > 1e-3
-    assert found.v[:, -1, 2] == pytest.approx(known["rod.omega"][-1], rel=1e-6)
+    assert tangents.v[:, -1, 2] == pytest.approx(known["rod.omega"][-1], rel=1e-6)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, ModelError, SynthesisError, constant_rate, fit_path
+from tools.models import linkages
 
 REFERENCE = Path(__file__).parents[1] / "published" / "reference"
 BOUNDS = {
@@ -28,16 +29,7 @@ def four_bar(
     D: tuple[float, float] = (0.4, 0.02),
     P: tuple[float, float] = (0.2, 0.1),
 ) -> Mechanism:
-    m = Mechanism("four-bar")
-    a, b, c = m.bar("crank", crank), m.bar("coupler", coupler, mass=0.3), m.bar("rocker", rocker)
-    m.revolute("A", m.ground.at(0, 0), a.start)
-    m.revolute("B", a.end, b.start)
-    m.revolute("C", b.end, c.end)
-    m.revolute("D", m.ground.at(*D), c.start)
-    m.drive_angle("motor", a, constant_rate(2 * np.pi))
-    m.trace("P", b.at(*P))
-    m.start_near(crank=0, coupler=45, rocker=90)
-    return m
+    return linkages.four_bar(D, crank, coupler, rocker, (45, 90), masses=(None, 0.3, None), traced=P)
 
 
 def traced(m: Mechanism, count: int = 16, name: str = "P") -> np.ndarray:
@@ -195,7 +187,7 @@ def test_progress_is_told_and_may_end_the_fit() -> None:
         ({"point": "Q"}, "no traced point 'Q'"),
         ({"least_transmission": 2.0}, "below pi/2"),
         ({"starts": 0}, "starts is 0"),
-        ({"start": 1}, "four-bar: fit_path: there is no argument 'start', did you mean 'starts'"),
+        ({"start": 1}, "four_bar: fit_path: there is no argument 'start', did you mean 'starts'"),
         ({"progress": 1}, "must be a function"),
     ],
 )

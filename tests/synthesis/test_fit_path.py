@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, ModelError, SynthesisError, constant_rate, fit_path
+from mbsd import Mechanism, ModelError, SynthesisError, fit_path
+from tests.synthesis.test_path_tangents import geared
 from tools.models import linkages
 
 REFERENCE = Path(__file__).parents[1] / "published" / "reference"
@@ -105,21 +106,6 @@ def test_numbers_of_the_authors_function_are_varied() -> None:
 
 
 def test_what_is_no_chain_of_dyads_is_swept_one_by_one() -> None:
-    def geared(far: float = 0.30, arm: float = 0.12) -> Mechanism:
-        m = Mechanism("geared")
-        first, second = m.body("one"), m.body("two")
-        left, right = m.bar("left", 0.25), m.bar("right", 0.25)
-        m.revolute("O", m.ground.at(0, 0), first.origin)
-        m.revolute("Q", m.ground.at(far, 0), second.origin)
-        m.gear_pair("mesh", first.origin, second.origin, far / 2, far / 2)
-        m.revolute("A", first.at(0.05, 0), left.start)
-        m.revolute("B", second.at(-0.05, 0), right.start)
-        m.revolute("C", left.end, right.end)
-        m.drive_angle("motor", first, constant_rate(2 * np.pi))
-        m.trace("P", left.at(arm, 0.03))
-        m.start_near(left=60, right=120, two=0)
-        return m
-
     vary = {"far": (0.28, 0.34), "arm": (0.05, 0.2)}
     wanted = traced(geared(0.31, 0.15), 8)
     fit = fit_path(geared(), wanted, vary, build=geared, seed=1, starts=1, generations=8, steps=48)

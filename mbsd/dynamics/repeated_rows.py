@@ -39,7 +39,7 @@ least to others from which it does not follow."""
 
 
 class Repeated(NamedTuple):
-    """k rows: all of joints and drivers, in order; see exchange.py."""
+    """k rows: all of joints and drivers, in order."""
 
     place: Any
     """(k, 3) int"""

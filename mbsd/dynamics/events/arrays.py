@@ -191,7 +191,7 @@ class Contacts(NamedTuple):
     parts: Any
     """(6,) PARTS."""
     samples: Any
-    """(c, 6) what is looked at along a step, at PARTS: see within.read."""
+    """(c, 6) guards along a step, at PARTS; see guards.py."""
     answer: Any
     """(c, 3 nb) change of velocities by a unit impulse along each row."""
     compliance: Any

@@ -102,7 +102,7 @@ def _measured_accelerations(ready: PreparedDynamics, holders: list[_Holder], eff
     """(n,) x'' of what each holder measures, at the start, under their efforts (n,)."""
     packed = ready.packed
     _write(ready, holders, efforts)
-    acceleration = ready.rates_at_start()[0][1]
+    acceleration = ready.evaluate_start()[0][1]
     steps = MOMENT * np.array([-1.0, 1.0])[:, None]
     q = ready.initial.q + steps * ready.initial.v + 0.5 * steps**2 * acceleration
     v = ready.initial.v + steps * acceleration

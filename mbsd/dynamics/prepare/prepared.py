@@ -169,7 +169,7 @@ class PreparedDynamics:
         loads, laws, initial = self.dynamics.loads, self.dynamics.laws, self.initial
         return stops_of(self.packed, loads, laws, self.start, self.end, initial.q, initial.v)
 
-    def rates_at_start(self) -> tuple[np.ndarray, np.ndarray, Scratch]:
+    def evaluate_start(self) -> tuple[np.ndarray, np.ndarray, Scratch]:
         """Return d(state)/dt (2, 3 nb) and multipliers (m,) at the start, and the scratch of that evaluation."""
         packed, state = self.packed, np.stack([self.initial.q, self.initial.v])
         out, lam = np.zeros_like(state), np.zeros(len(packed.ws.phi))

@@ -64,7 +64,7 @@ def refuse_unheld(ready: PreparedDynamics, reference: np.ndarray) -> None:
     dynamics, packed = ready.dynamics, ready.packed
     _refuse_massless(packed, ready.mobility, ready.start, ready.initial.q)
     _refuse_loaded(ready)
-    out, lam, scratch = ready.rates_at_start()
+    out, lam, scratch = ready.evaluate_start()
     finite = np.isfinite(scratch.force[3:])
     if not finite.all():
         name = packed.body_names[1 + int(np.argmin(finite)) // 3]
@@ -207,7 +207,7 @@ def refuse_pressed(m: Model, start: float, end: float, prepared: Callable[..., P
 
 def _reaction(ready: PreparedDynamics, name: str) -> float:
     """The force (N) that the pin ``name`` carries at the start."""
-    return math.hypot(*ready.rates_at_start()[1][ready.packed.rows_of(name)].tolist())
+    return math.hypot(*ready.evaluate_start()[1][ready.packed.rows_of(name)].tolist())
 
 
 BESIDE = (0.003, 0.001)

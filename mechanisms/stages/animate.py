@@ -11,6 +11,7 @@ from mechanisms.stages.loading.inputs import Inputs, observed, sources_state
 from mechanisms.stages.parts.stage import current_parts
 from mechanisms.stages.solve import solving
 from mechanisms.stages.solve.skeleton_file import body_colours, main_material
+from shared.contract import Parts
 from shared.stage import console
 from shared.stage.errors import UserError, did_you_mean
 from shared.stage.files import sources_hash
@@ -19,7 +20,6 @@ from shared.stage.stages import Stage, key_of, versions
 
 if TYPE_CHECKING:
     from mbsd import Solution
-    from shared.contract import Parts
 
 
 QUANTITIES = ("velocities", "accelerations", "forces", "reactions", "energy")

@@ -12,6 +12,7 @@ from mechanisms.stages.loading.inputs import Inputs, observed, sources_state
 from mechanisms.stages.loading.loading import refuse_arguments
 from mechanisms.stages.parts.stage import current_parts
 from mechanisms.stages.solve import solving
+from shared.contract import Parts
 from shared.stage import console
 from shared.stage.errors import UserError, did_you_mean
 from shared.stage.files import sources_hash, write_bytes
@@ -20,7 +21,6 @@ from shared.stage.stages import Stage, key_of, versions
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Tolerances
-    from shared.contract import Parts
 
 
 # Requests of tolerances.py: by the name of a result, the arguments of :func:`mbsd.tolerances`.

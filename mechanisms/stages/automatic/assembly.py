@@ -7,13 +7,15 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 
+from mbsd import Mechanism
 from mechanisms.stages.automatic.body_shapes import PlacedEye, body_shape, rod_shape, yoke_shape
-from mechanisms.stages.automatic.layout.plan import BOLT_HOLE, Mark
+from mechanisms.stages.automatic.layout.items import Heights
+from mechanisms.stages.automatic.layout.plan import BOLT_HOLE, Foot, Mark, Plan
+from mechanisms.stages.automatic.layout.sizes import Sizes
 from mechanisms.stages.automatic.standing import BackPlate, Upright
 from mechanisms.stages.automatic.wheels.wheels import shape_of
 from shared.shapes.base import base_plate, foot
@@ -21,21 +23,13 @@ from shared.shapes.build import extruded
 from shared.shapes.engraving import LETTERS, dial, engraved, rule, text
 from shared.shapes.kernel import is_of_kernel
 from shared.shapes.link import Eye, with_eyes
-from shared.shapes.outline import circle
+from shared.shapes.outline import Circle, circle
 from shared.shapes.screw import SOCKET, head_diameter, socket_screw
 from shared.shapes.solid import Solid, placed
 from shared.shapes.standards import screw_length, screw_name
 from shared.stage.console import Shown
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.plan import Foot, Plan
-    from mechanisms.stages.automatic.layout.sizes import Sizes
-    from shared.shapes.outline import Circle
-
 
 # A failure of the CAD kernel in automatic parts becomes an error that names the part, no traceback.
 

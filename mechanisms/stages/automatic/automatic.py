@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
 
+import cadquery as cq
+
+from mbsd import Mechanism, Solution
 from mechanisms.stages.automatic.assembly import (
     ROD,
     Wish,
@@ -46,17 +48,11 @@ from mechanisms.stages.loading.wishes import wished, wished_scale
 from shared.contract.materials import MATERIALS
 from shared.contract.parts import Mount, mounted
 from shared.shapes.bodies import Bodies, pair_of
+from shared.shapes.outline import Point
+from shared.shapes.solid import Solid
+from shared.shapes.standards import Fit
 from shared.stage.console import Shown
 from shared.stage.errors import UserError, did_you_mean
-
-if TYPE_CHECKING:
-    import cadquery as cq
-
-    from mbsd import Mechanism, Solution
-    from shared.shapes.outline import Point
-    from shared.shapes.solid import Solid
-    from shared.shapes.standards import Fit
-
 
 # Names in wishes for parts: bodies and materials that there are.
 

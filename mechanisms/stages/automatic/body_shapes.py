@@ -6,27 +6,20 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import Item, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
+from mechanisms.stages.automatic.layout.items import Heights, Item, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Plan
 from mechanisms.stages.automatic.layout.planar import Rounded, convex_hull
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded
 from shared.shapes.kernel import first_sound
 from shared.shapes.link import Eye, link, plate_link, with_eyes
-from shared.shapes.outline import hull_holds, inset_corners
+from shared.shapes.outline import Point, hull_holds, inset_corners
 from shared.shapes.solid import placed
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-    from shared.shapes.outline import Point
-
 
 # The plate of a body: a bar between two eyes, a plate round more of them, by what outline its eyes have (rmm).
 

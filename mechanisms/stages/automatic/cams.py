@@ -5,14 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd import Mechanism, Solution
+from mbsd.cams import CamProfile
+from mbsd.model.body import Marker
+from mbsd.model.force import Force
+from mbsd.model.joint import Joint
 from mechanisms.stages.automatic.layout.curves import curve_path, on_body, set_back, turns_left
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import build, kind
+from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Levels, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Plan, build, kind
 from mechanisms.stages.automatic.layout.planar import Rounded, around, disc
 from mechanisms.stages.automatic.layout.sizes import CLEAR, Extent, distance, extent
 from mechanisms.stages.automatic.pins.free_bodies import Face
@@ -24,17 +28,6 @@ from shared.shapes.outline import circle
 from shared.shapes.solid import placed
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism, Solution
-    from mbsd.cams import CamProfile
-    from mbsd.model.body import Marker
-    from mbsd.model.force import Force
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-
 
 # Bodies whose plate is a wheel or a cam: what such joints have in common.
 

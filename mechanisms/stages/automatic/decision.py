@@ -5,21 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice, product
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from mechanisms.stages.automatic.layout.layers import ALL, Purse, Undecided, blocking, find_layers
-from mechanisms.stages.automatic.layout.layout import Springs
+from mechanisms.stages.automatic.layout.layout import Layout, Springs
+from mechanisms.stages.automatic.layout.sizes import Sizes
 from mechanisms.stages.automatic.pins.bridges import Bridge, bridges_over, may_hang
 from mechanisms.stages.automatic.pins.free_bodies import RimMark
 from mechanisms.stages.automatic.pins.pins import webbed
 from mechanisms.stages.automatic.slides.curved_slots import CurvedSlot
 from shared.stage.console import Shown, warn
 from shared.stage.errors import UserError
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.sizes import Sizes
-
 
 # Why there is no order of layers: the fewest bodies that cannot pass each other, and what to do.
 

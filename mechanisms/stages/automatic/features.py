@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import mechanisms.stages.automatic.kinds  # noqa: F401  (enters them)
-from mechanisms.stages.automatic.layout.items import Anchor
+from mbsd import Mechanism
+from mbsd.model.force import Force
+from mbsd.model.joint import Joint
+from mechanisms.stages.automatic.body_shapes import Joined
+from mechanisms.stages.automatic.layout.items import Anchor, Heights
 from mechanisms.stages.automatic.layout.layout import Feature, Layout
-from mechanisms.stages.automatic.layout.plan import CONTACT_KINDS, DRIVER_KINDS, FORCE_KINDS, KINDS
+from mechanisms.stages.automatic.layout.plan import CONTACT_KINDS, DRIVER_KINDS, FORCE_KINDS, KINDS, Gather, Plan
 from mechanisms.stages.automatic.layout.sizes import ROD
 from mechanisms.stages.automatic.pins.free_bodies import free_bodies, styluses, weights
 from mechanisms.stages.automatic.pins.pins import add_poses
@@ -21,15 +24,6 @@ from mechanisms.stages.automatic.wheels.gears import with_own_layers
 from shared.shapes.link import Eye
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism
-    from mbsd.model.force import Force
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.body_shapes import Joined
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.plan import Gather, Plan
-
 
 # The features of a mechanism: of its joints, forces, contacts and drivers by their kinds; eyes where a body is left
 # out.

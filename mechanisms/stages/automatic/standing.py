@@ -6,26 +6,22 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 
 from mechanisms.stages.automatic.layout.plan import free_name
 from mechanisms.stages.automatic.layout.planar import convex_hull
+from mechanisms.stages.automatic.layout.sizes import Sizes
+from shared.contract import Mount
 from shared.contract.materials import MATERIALS
+from shared.shapes.bodies import Bodies
 from shared.shapes.build import extruded
 from shared.shapes.facets import facets
 from shared.shapes.kernel import rough_size
 from shared.shapes.outline import circle
 from shared.shapes.solid import Solid, placed
 from shared.shapes.stand import Bolt, bolt, column, drilled, foot, screwed, seated
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.sizes import Sizes
-    from shared.contract import Mount
-    from shared.shapes.bodies import Bodies
-
 
 # The base plate of a machine that stands, and the axes in which it is laid out: x right and y up as it stands.
 

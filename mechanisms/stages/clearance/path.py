@@ -6,21 +6,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
 
+from mechanisms.stages.clearance.pieces import MeshPiece
 from shared.contract import Motion, Parts
+from shared.contract.loads import Shape
+from shared.contract.motion import BodyMotion, JointMotion
 from shared.shapes.standards import Fit
 from shared.shapes.units import mm
-
-if TYPE_CHECKING:
-    from mechanisms.stages.clearance.pieces import MeshPiece
-    from shared.contract.loads import Shape
-    from shared.contract.motion import BodyMotion, JointMotion
-    from shared.stage.scale import Scale
-
+from shared.stage.scale import Scale
 
 # The motion of a model at a scale: that of the machine, geometrically similar; angles and times stay. And what a
 # refusal of its parts adds.

@@ -15,12 +15,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechanisms.stages.clearance.path import BodyPath, relative
+from mechanisms.stages.clearance.pieces import MeshPiece
+from shared.contract import Motion
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
-
-    from mechanisms.stages.clearance.pieces import MeshPiece
-    from shared.contract import Motion
 
 ROUNDING = 1e-3
 """How far (mm) outlines may be off, since their corners are rounded."""

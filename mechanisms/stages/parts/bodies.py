@@ -4,20 +4,18 @@ from __future__ import annotations
 
 import hashlib
 import re
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from shared.contract import BodyParts, End, Held, Piece, Rolling
 from shared.contract.materials import MATERIALS
-from shared.shapes.bodies import Bodies
+from shared.shapes.bodies import Bodies, Place
 from shared.shapes.solid import Solid
 from shared.shapes.units import metres
 from shared.stage.errors import UserError, did_you_mean
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from mechanisms.stages.parts.memory import KeptPieces
-    from shared.shapes.bodies import Place
 
 
 # Checks what ``parts()`` returned before anything is made of it.

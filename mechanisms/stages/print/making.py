@@ -11,17 +11,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.base.files import csv_text
-from mechanisms.stages.print.laying import Laid, Sheet, fitting, groups, laid, sheet_of
+from mechanisms.stages.print.laying import Bed, Laid, Sheet, fitting, groups, laid, sheet_of
 from mechanisms.stages.print.plates import Placed, dxf, file_of, packed, section, stl, three_mf
+from shared.contract import Piece
 from shared.contract.quantity import written
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
+from shared.stage.paths import Out
 
 if TYPE_CHECKING:
     from mechanisms.stages.clearance.pieces import MeshPiece
-    from mechanisms.stages.print.laying import Bed
-    from shared.contract import Piece
-    from shared.stage.paths import Out
 
 
 # Lists of pieces to make and to buy, for people (Markdown) and for tables (CSV).

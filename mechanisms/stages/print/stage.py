@@ -6,7 +6,7 @@ import math
 import re
 from typing import TYPE_CHECKING
 
-from shared.contract import read_parts
+from shared.contract import Parts, read_parts
 from shared.contract.quantity import counted
 from shared.stage.console import say, warn
 from shared.stage.errors import UserError
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from mechanisms.stages.clearance.pieces import MeshPiece
     from mechanisms.stages.print.laying import Bed
     from mechanisms.stages.print.making import Bought, Product
-    from shared.contract import Parts
 
 
 # The ``print`` stage: pieces of parts.json on plates to print, outlines to cut, lists of what to make and what to buy.

@@ -8,6 +8,7 @@ from itertools import chain
 from typing import TYPE_CHECKING, Literal
 
 from mechanisms.stages.solve import solving
+from shared.contract import BodyParts, Mass, Parts
 from shared.contract.materials import MATERIALS
 from shared.contract.quantity import written
 from shared.stage.console import say
@@ -15,7 +16,6 @@ from shared.stage.errors import UserError, did_you_mean
 
 if TYPE_CHECKING:
     from mbsd import Marker, Mechanism, Solution
-    from shared.contract import BodyParts, Mass, Parts
 
 
 # Masses for a motion: from mechanism.py, from parts.json, or estimated.

@@ -12,13 +12,13 @@ from mechanisms.stages.solve.masses import Source
 from mechanisms.stages.solve.skeleton_file import body_colours
 from shared import contract
 from shared.contract import Shape
+from shared.contract.loads import Look
 
 if TYPE_CHECKING:
     from mbsd import Joint, Solution
     from mbsd.model.force import Force
     from mbsd.results.force_view import ForceView
     from mbsd.results.views import Wrench
-    from shared.contract.loads import Look
 
 
 # How joints, forces and contacts look beyond their signs: markers, wheels, curves, as data.json has them.

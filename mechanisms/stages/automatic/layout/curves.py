@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from manifold3d import CrossSection, JoinType
 from scipy.interpolate import CubicSpline
 
-if TYPE_CHECKING:
-    from mbsd.model.body import Marker
-    from mbsd.model.laws.curve import Curve
-    from mechanisms.stages.automatic.layout.layout import Layout
-
+from mbsd.model.body import Marker
+from mbsd.model.laws.curve import Curve
+from mechanisms.stages.automatic.layout.layout import Layout
 
 # Surfaces of the model as places in the plane: curves through points, and profiles y(x).
 

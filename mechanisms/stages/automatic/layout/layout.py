@@ -3,24 +3,31 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Item, PinReach, Reach, span, spans_meet
+from mbsd import Marker, Mechanism
+from mbsd.model.joint import Joint
+from mechanisms.stages.automatic.layout.items import (
+    BASE,
+    PIVOT,
+    Anchor,
+    Heights,
+    Item,
+    Levels,
+    Need,
+    PinReach,
+    Reach,
+    span,
+    spans_meet,
+)
 from mechanisms.stages.automatic.layout.layers import Problem
 from mechanisms.stages.automatic.layout.planar import Rounded, around, core_gaps, least_gap, placed
-from mechanisms.stages.automatic.layout.sizes import rods_of
-
-if TYPE_CHECKING:
-    from collections.abc import Hashable, Iterable, Mapping
-
-    from mbsd import Marker, Mechanism
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Anchor, Heights, Levels, Need
-    from mechanisms.stages.automatic.layout.sizes import Sizes
+from mechanisms.stages.automatic.layout.sizes import Sizes, rods_of
 
 
 @dataclass(frozen=True)

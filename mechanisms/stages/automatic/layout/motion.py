@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from mbsd import Mechanism, Solution
-    from mbsd.model.joint import Joint
-
+from mbsd import Mechanism, Solution
+from mbsd.model.joint import Joint
 
 # The poses of all bodies over the motion, close enough to each other to look for collisions in the plane.
 

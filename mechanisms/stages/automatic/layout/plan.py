@@ -3,27 +3,22 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import singledispatch
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
+import cadquery as cq
+
+from mbsd import Mechanism
+from mbsd.model.force import Force
+from mbsd.model.joint import Joint
+from mechanisms.stages.automatic.layout.items import Heights
+from mechanisms.stages.automatic.layout.layout import Carrier, Feature, Layout
 from shared.contract.parts import Mount
 from shared.shapes.link import Eye
+from shared.shapes.outline import Circle
 from shared.shapes.solid import Solid
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    import cadquery as cq
-
-    from mbsd import Mechanism
-    from mbsd.model.force import Force
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.layout import Carrier, Feature, Layout
-    from shared.shapes.outline import Circle
-
 
 # Features of kinds of joints, forces and contacts, and the registries; the package's docstring says how.
 

@@ -5,10 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from mbsd import Mechanism, Solution
+from mbsd.model.body import Marker
+from mbsd.model.force import Force
+from mbsd.model.joint import Joint
 from mechanisms.stages.loading.wishes import wished_scale
 from mechanisms.stages.parts_files import TOLERANCE
 from shared.shapes.pin import Head, Pivot
@@ -17,14 +21,7 @@ from shared.shapes.standards import CIRCLIPS, Fit, shim_ring
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
 from shared.stage.face import said
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism, Solution
-    from mbsd.model.body import Marker
-    from mbsd.model.force import Force
-    from mbsd.model.joint import Joint
-    from shared.stage.scale import Scale
-
+from shared.stage.scale import Scale
 
 # Lengths from which the scale of the parts follows: the reach of joints, and lengths that must hold a pin's width.
 

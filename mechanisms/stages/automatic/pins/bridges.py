@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import Anchor
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import build
+from mechanisms.stages.automatic.layout.items import Anchor, Heights
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Plan, build
 from mechanisms.stages.automatic.layout.planar import Rounded, core_gaps, placed
 from mechanisms.stages.automatic.pins.pin_solids import FOOT, TOP, run, standing
 from mechanisms.stages.automatic.pins.pins import Pin
@@ -22,12 +21,6 @@ from shared.shapes.build import bore, eased, extruded
 from shared.shapes.pin import pin
 from shared.shapes.solid import placed as placed_solid
 from shared.stage.errors import UserError
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-
 
 # Discs that moving things sweep, in cells of the plane, so that of millions a ray looks at few.
 

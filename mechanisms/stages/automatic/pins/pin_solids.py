@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from mechanisms.stages.automatic.layout.plan import BOLT_HOLE, Foot, build
+from mechanisms.stages.automatic.layout.items import Heights, Levels
+from mechanisms.stages.automatic.layout.plan import BOLT_HOLE, Foot, Plan, build
+from mechanisms.stages.automatic.layout.sizes import Sizes
 from mechanisms.stages.automatic.pins.pins import Pin
 from shared.shapes.base import bolt_circle, column, pedestal
 from shared.shapes.build import bore
@@ -13,12 +13,6 @@ from shared.shapes.pin import Head, bushing, pin, washer
 from shared.shapes.screw import socket_screw
 from shared.shapes.solid import Solid, placed
 from shared.shapes.standards import screw_length, screw_name
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
-    from mechanisms.stages.automatic.layout.plan import Plan
-    from mechanisms.stages.automatic.layout.sizes import Sizes
-
 
 # The solids of a pin: what holds it, what runs on it, and what keeps it in place (rmm).
 

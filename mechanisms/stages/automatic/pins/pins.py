@@ -6,26 +6,30 @@ from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations, pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Anchor, Item, Need, PinReach, PivotReach, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
+from mbsd import Mechanism, Solution
+from mbsd.model.force import Force
+from mbsd.model.joint import Joint
+from mechanisms.stages.automatic.layout.items import (
+    BASE,
+    PIVOT,
+    Anchor,
+    Item,
+    Levels,
+    Need,
+    PinReach,
+    PivotReach,
+    Reach,
+)
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
 from mechanisms.stages.automatic.layout.plan import force_kind, kind
 from mechanisms.stages.automatic.layout.planar import disc
 from mechanisms.stages.automatic.layout.sizes import ROD, Extent, extent
+from shared.shapes.bodies import Place
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism, Solution
-    from mbsd.model.force import Force
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Levels
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from shared.shapes.bodies import Place
-
 
 # Rods: distance joints, and what is like a body here. A rod has an eye on the pin at either of its ends.
 #

@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import cadquery as cq
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot, build, contact_kind, driver_kind, force_kind
+from mbsd import Mechanism
+from mbsd.model.force import Force
+from mbsd.model.joint import Joint
+from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Levels, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Foot, Plan, build, contact_kind, driver_kind, force_kind
 from mechanisms.stages.automatic.layout.planar import Rounded, disc
 from mechanisms.stages.automatic.layout.sizes import LINEAR, ROPE, stretching
 from mechanisms.stages.automatic.pins.pin_solids import upper_end
@@ -20,17 +23,6 @@ from shared.shapes.base import column
 from shared.shapes.link import Eye
 from shared.shapes.screw import Collar, ball_stud
 from shared.shapes.solid import Hold, Solid, placed
-
-if TYPE_CHECKING:
-    import cadquery as cq
-
-    from mbsd import Mechanism
-    from mbsd.model.force import Force
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-
 
 # Elements that stretch between two points, and the ball studs that hold its ends: in a body's plate, on a post on
 # ground, or on the end of a joint's pin.

@@ -13,25 +13,19 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd import Mechanism
 from mechanisms.stages.automatic.layout import motion
-from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Anchor, Item, Need, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot
+from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Anchor, Heights, Item, Levels, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Foot, Plan
 from mechanisms.stages.automatic.layout.planar import disc
 from mechanisms.stages.automatic.layout.sizes import CLEAR
 from shared.shapes.link import Eye
 from shared.shapes.pin import pin
 from shared.shapes.solid import placed
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
 
 AWAY, RADIUS, EYE = 17.8, 3.2, 6.2
 """R and r, and the radius of the plate round a stop pin (rmm)."""

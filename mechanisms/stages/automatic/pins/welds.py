@@ -9,13 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import BASE, Anchor, Item, Need, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot, kind
+from mbsd import Mechanism
+from mbsd.model.joint import Joint
+from mechanisms.stages.automatic.layout.items import BASE, Anchor, Heights, Item, Levels, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Foot, Plan, kind
 from mechanisms.stages.automatic.layout.planar import around
 from shared.shapes import outline
 from shared.shapes.build import extruded
@@ -24,13 +25,6 @@ from shared.shapes.pin import Head, pin
 from shared.shapes.solid import placed
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
 
 BOLT, HEAD = 5.0, Head(9.0, 3.0, 0.8)
 """Diameter of a bolt (rmm), and its head."""

@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd import Mechanism, Solution
+from mbsd.model.force import Force
+from mbsd.model.joint import Joint
 from mbsd.model.laws.curve import Curve
 from mechanisms.stages.automatic.cams import pushing_cam, pushing_extent, with_room
 from mechanisms.stages.automatic.layout.curves import curve_path, farthest, on_body, profile_path, turns_left
-from mechanisms.stages.automatic.layout.layout import Feature
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
 from mechanisms.stages.automatic.layout.plan import contact_kind, force_kind, kind
 from mechanisms.stages.automatic.layout.sizes import CLEAR, Extent, extent
 from mechanisms.stages.automatic.pins.pins import SAME, Pin
@@ -22,13 +24,6 @@ from mechanisms.stages.automatic.rolling.tracks import circle, rolled_road, touc
 from shared.shapes.outline import distances
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism, Solution
-    from mbsd.model.force import Force
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.layout import Layout
-
 
 # Straight walls on ground from contacts with lines: as long as the way along them, and meeting in mitred corners.
 #

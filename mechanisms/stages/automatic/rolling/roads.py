@@ -5,27 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 from manifold3d import CrossSection, FillRule, OpType
 
+from mbsd import Mechanism
 from mechanisms.stages.automatic.layout.curves import area
-from mechanisms.stages.automatic.layout.items import Item, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot
+from mechanisms.stages.automatic.layout.items import Heights, Item, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Foot, Plan
 from mechanisms.stages.automatic.layout.planar import around, convex_hull
+from mechanisms.stages.automatic.rolling.rounds import Round
 from shared.shapes.build import extruded
 from shared.shapes.outline import distances, simplified
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-    from mechanisms.stages.automatic.rolling.rounds import Round
-
 
 # Backings behind the surface of a road: matter down to a straight lower side, or a band along it where that would
 # cross the surface, itself or the way of what runs on it.

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal, cast
+from typing import Literal, cast
 
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import build
+from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Levels, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Plan, build
 from mechanisms.stages.automatic.layout.planar import disc
 from mechanisms.stages.automatic.layout.sizes import CLEAR
 from mechanisms.stages.automatic.pins.free_bodies import Face
@@ -19,12 +19,6 @@ from shared.shapes.pin import washer
 from shared.shapes.screw import ball as sphere
 from shared.shapes.solid import placed
 from shared.stage.errors import UserError
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-
 
 # Round parts that touch something: a ball that is free, a wheel with a tyre, a disc on a body that has joints.
 #

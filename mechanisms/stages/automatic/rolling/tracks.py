@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 
+from mbsd.model.force import Force
+from mbsd.model.joint import Joint
 from mechanisms.stages.automatic.layout.curves import (
     continued,
     curve_path,
@@ -19,9 +20,9 @@ from mechanisms.stages.automatic.layout.curves import (
     on_body,
     turns_left,
 )
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot
+from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Foot, Plan
 from mechanisms.stages.automatic.layout.planar import Rounded, around, convex_hull, disc
 from mechanisms.stages.automatic.pins.pins import Pin
 from mechanisms.stages.automatic.rolling.roads import (
@@ -37,20 +38,12 @@ from mechanisms.stages.automatic.rolling.roads import (
     polygon,
     straight_back,
 )
+from mechanisms.stages.automatic.rolling.rounds import Round
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded
 from shared.shapes.outline import distances, normals, simplified
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd.model.force import Force
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-    from mechanisms.stages.automatic.rolling.rounds import Round
-
 
 # Tracks of round parts where there is no road on ground: rings and discs about closed curves, and roads of moving
 # bodies.

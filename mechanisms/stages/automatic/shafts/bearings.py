@@ -6,23 +6,18 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechanisms.stages.automatic.layout.items import Item, Reach
 from mechanisms.stages.automatic.layout.layers import Problem, Undecided, find_layers
 from mechanisms.stages.automatic.layout.planar import Rounded, around, disc, least_gap
-from mechanisms.stages.automatic.shafts.bodies import NEAR, SAME, carries, marker_on, place
+from mechanisms.stages.automatic.layout.sizes import Sizes
+from mechanisms.stages.automatic.shafts.bodies import NEAR, SAME, Machine, carries, marker_on, place
 from mechanisms.stages.automatic.shafts.passing import Takes
+from mechanisms.stages.automatic.shafts.shaft_plan import Journal, Measures, ShaftPlan
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.sizes import Sizes
-    from mechanisms.stages.automatic.shafts.bodies import Machine
-    from mechanisms.stages.automatic.shafts.shaft_plan import Journal, Measures, ShaftPlan
-
 
 # Pins between links in different planes, and axles on ground that links turn on (mm).
 

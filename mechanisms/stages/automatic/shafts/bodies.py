@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd import Mechanism
+from mbsd.model.body import Marker
+from mbsd.model.joint import Joint
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from mbsd import Mechanism
-    from mbsd.model.body import Marker
-    from mbsd.model.joint import Joint
-
 
 # Roles of bodies with places along the normal: shafts, links in one plane, pistons, rams, valves
 # (mm).

@@ -4,23 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import cadquery as cq
 
 from mechanisms.stages.automatic.body_shapes import first_made
-from mechanisms.stages.automatic.shafts.cylinders import HEAD, SMALL_END, WRIST_PIN
+from mechanisms.stages.automatic.shafts.cylinders import HEAD, SMALL_END, WRIST_PIN, Cylinder
 from mechanisms.stages.automatic.shafts.passing import DECK, deck_half, deck_range, deck_top
-from mechanisms.stages.automatic.shafts.valves import COIL, along_x, port_shape, spring_seats
+from mechanisms.stages.automatic.shafts.valves import COIL, ValvePlan, along_x, port_shape, spring_seats
 from shared.shapes.build import built_once, eased, extruded, turned
 from shared.shapes.kernel import through_holes
 from shared.shapes.outline import circle
 from shared.shapes.solid import Hold, Solid, placed
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.shafts.cylinders import Cylinder
-    from mechanisms.stages.automatic.shafts.valves import ValvePlan
-
 
 # A piston with its rings and its wrist pin, and its liner with cooling fins, cut open, with a head (mm).
 

@@ -6,8 +6,8 @@ Along the middle of a bore, s is counted from abreast of the shaft. All proporti
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +16,10 @@ from mechanisms.stages.automatic.shafts.bodies import (
     HUB,
     KNUCKLE_EYE,
     SAME,
+    Link,
+    Machine,
+    Piston,
+    Shaft,
     carrier,
     is_carrier,
     refuse_near,
@@ -25,11 +29,6 @@ from mechanisms.stages.automatic.shafts.bodies import (
 )
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from mechanisms.stages.automatic.shafts.bodies import Link, Machine, Piston, Shaft
 
 SQUARE = 0.95
 """Bore over stroke, where there is room and no gas says otherwise."""

@@ -3,35 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 
 from mechanisms.stages.automatic.body_shapes import body_shape, first_made
 from mechanisms.stages.automatic.layout.planar import convex_hull
-from mechanisms.stages.automatic.shafts.bearings import BOSS, FOOT, heights_of
-from mechanisms.stages.automatic.shafts.bodies import HUB, KNUCKLE_EYE, KNUCKLE_PIN
+from mechanisms.stages.automatic.layout.sizes import Sizes
+from mechanisms.stages.automatic.shafts.bearings import BOSS, FOOT, Axle, Bearers, heights_of
+from mechanisms.stages.automatic.shafts.bodies import HUB, KNUCKLE_EYE, KNUCKLE_PIN, Link, Machine
 from mechanisms.stages.automatic.shafts.cylinders import BIG_END, SHANK
+from mechanisms.stages.automatic.shafts.shaft_plan import Journal
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded
 from shared.shapes.kernel import rough_box, through_holes
 from shared.shapes.link import Eye, link
 from shared.shapes.pin import Head, pin, washer
 from shared.shapes.solid import Solid, placed
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from mechanisms.stages.automatic.layout.sizes import Sizes
-    from mechanisms.stages.automatic.shafts.bearings import Axle, Bearers
-    from mechanisms.stages.automatic.shafts.bodies import Link, Machine
-    from mechanisms.stages.automatic.shafts.shaft_plan import Journal
-
 
 # Links in one plane: connecting rods with a split big end, and plates round any number of eyes (mm).
 

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
+from mbsd import Mechanism
+from mbsd.model.body import Marker
+from mbsd.model.joint import Joint
 from mechanisms.stages.automatic.shafts.bodies import (
     NEAR,
     SAME,
@@ -14,6 +17,7 @@ from mechanisms.stages.automatic.shafts.bodies import (
     LinkEye,
     Machine,
     Piston,
+    Point,
     Ram,
     RamPin,
     Shaft,
@@ -29,15 +33,6 @@ from mechanisms.stages.automatic.shafts.bodies import (
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
-
-    from mbsd import Mechanism
-    from mbsd.model.body import Marker
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.shafts.bodies import Point
-
 
 # Bodies that slide along a line of ground: pistons, rams that are driven in several planes, valves under cams (mm).
 

@@ -6,21 +6,15 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechanisms.stages.automatic.layout.planar import Rounded, around, disc, least_gap
-from mechanisms.stages.automatic.shafts.bodies import carrier, flange, is_carrier
-from mechanisms.stages.automatic.shafts.cylinders import HEAD, flange_shape, rod_shapes, shank_shapes
+from mechanisms.stages.automatic.shafts.bodies import Link, Machine, carrier, flange, is_carrier
+from mechanisms.stages.automatic.shafts.cylinders import HEAD, Cylinder, flange_shape, rod_shapes, shank_shapes
+from mechanisms.stages.automatic.shafts.shaft_plan import Measures, ShaftPlan
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.shafts.bodies import Link, Machine
-    from mechanisms.stages.automatic.shafts.cylinders import Cylinder
-    from mechanisms.stages.automatic.shafts.shaft_plan import Measures, ShaftPlan
-
 
 # Checks that bodies pass each other in the plane where they share heights, before anything is built (mm).
 

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
-from typing import TYPE_CHECKING
 
 from mechanisms.stages.automatic.layout.planar import Rounded, around, least_gap
+from mechanisms.stages.automatic.layout.sizes import Sizes
 from mechanisms.stages.automatic.shafts.bodies import (
     KNUCKLE_EYE,
     SAME,
+    Link,
+    LinkEye,
+    Machine,
+    Mounted,
+    Shaft,
+    Throw,
     carrier,
     carries,
     height_for,
@@ -19,16 +26,8 @@ from mechanisms.stages.automatic.shafts.bodies import (
     middle,
     refuse_near,
 )
-from mechanisms.stages.automatic.shafts.cylinders import BIG_END, CRANK_PIN, ROD, SMALL_END
+from mechanisms.stages.automatic.shafts.cylinders import BIG_END, CRANK_PIN, ROD, SMALL_END, Cylinder
 from shared.stage.errors import UserError
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from mechanisms.stages.automatic.layout.sizes import Sizes
-    from mechanisms.stages.automatic.shafts.bodies import Link, LinkEye, Machine, Mounted, Shaft, Throw
-    from mechanisms.stages.automatic.shafts.cylinders import Cylinder
-
 
 # How thick the links may be: what their distances along the normal leave (mm).
 

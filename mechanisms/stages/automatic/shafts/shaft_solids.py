@@ -7,24 +7,19 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 
 from mechanisms.stages.automatic.body_shapes import first_made
-from mechanisms.stages.automatic.shafts.shaft_plan import THIN
+from mechanisms.stages.automatic.shafts.bodies import Link, LinkEye, Machine, Shaft
+from mechanisms.stages.automatic.shafts.shaft_plan import THIN, Pin, ShaftPlan, Web
 from shared.contract.materials import MATERIALS
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded, turned
+from shared.shapes.outline import Circle
+from shared.shapes.solid import Solid
 from shared.shapes.units import cubic_metres, mm
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.shafts.bodies import Link, LinkEye, Machine, Shaft
-    from mechanisms.stages.automatic.shafts.shaft_plan import Pin, ShaftPlan, Web
-    from shared.shapes.outline import Circle
-    from shared.shapes.solid import Solid
-
 
 # A shaft as one solid: journals, webs with counterweights, crank pins, a snout and a flange (mm).
 

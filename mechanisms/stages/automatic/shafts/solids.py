@@ -5,15 +5,24 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
+import cadquery as cq
 import numpy as np
 
 from mechanisms.stages.automatic.assembly import kernel_refusals, materials
 from mechanisms.stages.automatic.layout.plan import free_name
 from mechanisms.stages.automatic.layout.planar import convex_hull
+from mechanisms.stages.automatic.shafts.along import Along
 from mechanisms.stages.automatic.shafts.bearings import bore_of
-from mechanisms.stages.automatic.shafts.bodies import KNUCKLE_PIN, flange, is_carrier, knuckle_eyes, rod_foot
+from mechanisms.stages.automatic.shafts.bodies import (
+    KNUCKLE_PIN,
+    Link,
+    LinkEye,
+    flange,
+    is_carrier,
+    knuckle_eyes,
+    rod_foot,
+)
 from mechanisms.stages.automatic.shafts.cylinder_solids import (
     PistonSize,
     bank_solids,
@@ -40,6 +49,7 @@ from mechanisms.stages.automatic.shafts.shaft_solids import balanced_webs, built
 from mechanisms.stages.automatic.shafts.valves import cam_shape, valve_solids
 from mechanisms.stages.automatic.shafts.wheels import wheel_solids
 from mechanisms.stages.automatic.standing import BackPlate, Upright
+from shared.contract import Mount
 from shared.contract.materials import MATERIALS
 from shared.shapes.base import base_plate
 from shared.shapes.build import eased, extruded
@@ -47,14 +57,6 @@ from shared.shapes.kernel import through_holes
 from shared.shapes.link import Eye
 from shared.shapes.outline import circle, hull
 from shared.shapes.solid import Solid, placed
-
-if TYPE_CHECKING:
-    import cadquery as cq
-
-    from mechanisms.stages.automatic.shafts.along import Along
-    from mechanisms.stages.automatic.shafts.bodies import Link, LinkEye
-    from shared.contract import Mount
-
 
 PLATE, FOOT, MARGIN, INSET, ROUND = 10.0, 3.0, 14.0, 11.0, 8.0
 """Base plate: thickness, height of its feet, what it reaches beyond all that stands on it, place of its feet,

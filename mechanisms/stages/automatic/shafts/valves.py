@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import cadquery as cq
 import numpy as np
 
+from mbsd.model.force import Force
 from mechanisms.stages.automatic.cams import cut_outline
 from mechanisms.stages.automatic.layout.planar import around
 from mechanisms.stages.automatic.layout.sizes import CLEAR
-from mechanisms.stages.automatic.shafts.bodies import Mounted, marker_on, place
-from mechanisms.stages.automatic.shafts.cylinders import HEAD
+from mechanisms.stages.automatic.shafts.bodies import Machine, Mounted, Valve, marker_on, place
+from mechanisms.stages.automatic.shafts.cylinders import HEAD, Cylinder
 from mechanisms.stages.automatic.shafts.passing import Takes, box
+from mechanisms.stages.automatic.shafts.shaft_plan import Measures
 from shared.shapes.build import extruded, turned
 from shared.shapes.cams import cam_disc, evenly
 from shared.shapes.outline import circle
@@ -21,17 +24,6 @@ from shared.shapes.solid import Hold, Solid, placed
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    import cadquery as cq
-
-    from mbsd.model.force import Force
-    from mechanisms.stages.automatic.shafts.bodies import Machine, Valve
-    from mechanisms.stages.automatic.shafts.cylinders import Cylinder
-    from mechanisms.stages.automatic.shafts.shaft_plan import Measures
-
 
 # Valves over cylinders, and the cams of the shafts that push them (mm).
 #

@@ -3,34 +3,26 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
+from mbsd.model.joint import Joint
 from mbsd.model.teeth import with_radii
 from mechanisms.stages.automatic.assembly import scaled
 from mechanisms.stages.automatic.layout.layout import Layout
 from mechanisms.stages.automatic.layout.planar import Rounded, disc
-from mechanisms.stages.automatic.shafts.bodies import SAME, Mounted, place, plane
+from mechanisms.stages.automatic.shafts.bodies import SAME, Machine, Mounted, place, plane
 from mechanisms.stages.automatic.shafts.passing import Takes
+from mechanisms.stages.automatic.shafts.shaft_plan import Measures
 from mechanisms.stages.automatic.wheels.gears import Mesh, in_phase, refuse_apart, wheel_at
-from mechanisms.stages.automatic.wheels.pulleys import BELT, Pulley, belt_of, rim_of
-from mechanisms.stages.automatic.wheels.wheels import HUB, shape_of
+from mechanisms.stages.automatic.wheels.pulleys import BELT, Belt, Pulley, belt_of, rim_of
+from mechanisms.stages.automatic.wheels.wheels import HUB, Wheel, shape_of
 from shared.shapes.kernel import through_holes
 from shared.shapes.link import Eye
 from shared.shapes.solid import Solid, placed
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.shafts.bodies import Machine
-    from mechanisms.stages.automatic.shafts.shaft_plan import Measures
-    from mechanisms.stages.automatic.wheels.pulleys import Belt
-    from mechanisms.stages.automatic.wheels.wheels import Wheel
-
 
 # Gears and pulleys on shafts, each in the plane of its joint: in phase, and with the room of their belts (mm).
 #

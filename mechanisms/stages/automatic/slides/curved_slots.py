@@ -10,28 +10,22 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from mbsd import Mechanism, Solution
+from mbsd.model.joint import Joint
 from mechanisms.stages.automatic.layout.curves import continued, curve_path, end_ways, evenly, followed, on_body
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import build, kind
+from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Plan, build, kind
 from mechanisms.stages.automatic.layout.planar import convex_hull, disc
 from mechanisms.stages.automatic.layout.sizes import Extent, extent
 from mechanisms.stages.automatic.slides.slots import Slot, channelled, entered, slotted
 from shared.shapes.outline import normals, sharpest
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism, Solution
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
 
 STEP, MOST, FINEST = 2.0, 240, 960
 """Between places of a slot (rmm), and how many there are at most; as many as FINEST where fewer would stray."""

@@ -6,27 +6,20 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd import Mechanism, Solution
+from mbsd.model.joint import Joint
 from mechanisms.stages.automatic.layout import motion
-from mechanisms.stages.automatic.layout.items import BASE, Anchor, Item, Need, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot, build, kind
+from mechanisms.stages.automatic.layout.items import BASE, Anchor, Heights, Item, Levels, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Foot, Plan, build, kind
 from mechanisms.stages.automatic.layout.planar import Rounded, core_gaps, disc
 from mechanisms.stages.automatic.layout.sizes import Extent, extent
 from mechanisms.stages.automatic.slides.slides import HALF_LENGTH, POST, RAIL, Slide, bar
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism, Solution
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-
 
 # Slides on ground whose rails would cross, as of an elliptical trammel: a plate with grooves, and shuttles in them.
 #

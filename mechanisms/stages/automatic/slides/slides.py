@@ -5,26 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 
 from mechanisms.stages.automatic.layout import motion
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot, build
+from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Levels, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Foot, Plan, build
 from mechanisms.stages.automatic.layout.planar import Rounded
 from mechanisms.stages.automatic.layout.sizes import CLEAR
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded
 from shared.shapes.solid import placed
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-
 
 # Prismatic joints: a block with two gibs on a rail, which is on the body of the first marker.
 #

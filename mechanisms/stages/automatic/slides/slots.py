@@ -6,14 +6,17 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
+import cadquery as cq
 import numpy as np
 
+from mbsd import Mechanism
+from mbsd.model.joint import Joint
 from mechanisms.stages.automatic.layout import motion
-from mechanisms.stages.automatic.layout.items import BASE, Anchor, Item, Need, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot, build, kind
+from mechanisms.stages.automatic.layout.items import BASE, Anchor, Heights, Item, Levels, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Foot, Plan, build, kind
 from mechanisms.stages.automatic.layout.planar import around, convex_hull, disc
 from mechanisms.stages.automatic.pins.pin_solids import boss_height, holding_eye, standing
 from mechanisms.stages.automatic.pins.pins import SAME, Pin
@@ -24,16 +27,6 @@ from shared.shapes.pin import Head, grooved, pin, washer
 from shared.shapes.solid import Roll, Solid, placed
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    import cadquery as cq
-
-    from mbsd import Mechanism
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-
 
 # A pin that runs in several slots: one pin of its body, with a roller in each of them.
 #

@@ -6,14 +6,16 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd import Mechanism, Solution
+from mbsd.model.body import Marker
+from mbsd.model.force import Force
 from mbsd.model.joint import Joint
 from mbsd.model.teeth import with_radii
 from mechanisms.stages.automatic.layout.items import Item, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
 from mechanisms.stages.automatic.layout.plan import FORCE_KINDS, force_kind, kind
 from mechanisms.stages.automatic.layout.sizes import Extent, extent
 from mechanisms.stages.automatic.pins.pins import SAME
@@ -25,13 +27,6 @@ from shared.shapes.involute import ADDENDUM, foul_inside, longest_rack_tip, long
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism, Solution
-    from mbsd.model.body import Marker
-    from mbsd.model.force import Force
-    from mechanisms.stages.automatic.layout.layout import Layout
-
 
 # The wheel that lies in its body's layer: the largest, unless something else is in the way.
 #

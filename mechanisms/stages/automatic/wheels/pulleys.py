@@ -5,34 +5,27 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 
+from mbsd import Mechanism, Solution
+from mbsd.model.joint import Joint
 from mbsd.model.teeth import with_radii
-from mechanisms.stages.automatic.layout.items import Item, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import build
+from mechanisms.stages.automatic.layout.items import Heights, Item, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Plan, build
 from mechanisms.stages.automatic.layout.planar import Rounded
 from mechanisms.stages.automatic.layout.sizes import Extent, Sizes, extent
 from mechanisms.stages.automatic.wheels.wheels import Wheel, build_wheel, shape_of, with_hub
 from shared.contract.geometry import BeltPath
 from shared.shapes.build import extruded, turned
 from shared.shapes.involute import wire
+from shared.shapes.link import Eye
 from shared.shapes.outline import circle
 from shared.shapes.solid import Hold, Solid, placed
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism, Solution
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-    from shared.shapes.link import Eye
-
 
 # Pulleys: wheels with a rim for a round belt, or for a chain where the joint has teeth; what the belt needs of room.
 #

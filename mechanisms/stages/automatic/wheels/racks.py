@@ -5,29 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot, build
+from mbsd import Mechanism
+from mbsd.model.joint import Joint
+from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Foot, Plan, build
 from mechanisms.stages.automatic.layout.planar import Rounded, disc
+from mechanisms.stages.automatic.wheels.wheels import Wheel
 from shared.shapes.build import extruded
 from shared.shapes.involute import DEDENDUM, rack_outline, wire
 from shared.shapes.outline import circle
 from shared.shapes.solid import placed
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-    from mechanisms.stages.automatic.wheels.wheels import Wheel
-
 
 # Racks: a toothed bar in the layer of its pinions, screwed to its body's plate or on posts of the ground.
 #

@@ -7,14 +7,14 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import singledispatch
 from itertools import pairwise
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import cadquery as cq
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot, build
+from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Reach
+from mechanisms.stages.automatic.layout.layout import Carrier, Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Foot, Plan, build
 from mechanisms.stages.automatic.layout.planar import Rounded, disc, least_gap
 from mechanisms.stages.automatic.pins.free_bodies import Face
 from mechanisms.stages.automatic.pins.pins import SAME, Pin
@@ -23,12 +23,6 @@ from shared.shapes.involute import DEDENDUM, toothed, wire
 from shared.shapes.link import Eye
 from shared.shapes.outline import circle
 from shared.shapes.solid import placed
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.layout import Carrier, Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-
 
 # A wheel: its teeth in numbers, its layer, what room it takes. External wheels, and rings with teeth inside.
 #

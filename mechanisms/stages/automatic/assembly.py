@@ -110,23 +110,13 @@ LEAST = 0.99
 """How much of a word must be on the plate."""
 
 
-@dataclass(frozen=True)
-class Wish:
-    """A word that is asked for, its middle ``at`` (x, y) in the frame of its body (mm)."""
-
-    body: str
-    word: str
-    at: tuple[float, float]
-    height: float | None
-
-
-def place(wishes: Iterable[Wish], plan: Plan) -> None:
-    """Enter the words; letters are half as high as an eye's radius where nobody says."""
+def place(wishes: Iterable[tuple[str, Mark]], plan: Plan) -> None:
+    """Enter words by body, in mm; letters are half as high as an eye's radius where nobody says."""
     sizes = plan.layout.sizes
-    for wish in wishes:
-        x, y = (length / sizes.scale for length in wish.at)
-        height = wish.height / sizes.scale if wish.height else sizes.eye / 2
-        plan.marks.setdefault(wish.body, []).append(Mark(wish.word, x, y, height))
+    for body, wish in wishes:
+        height = wish.height / sizes.scale or sizes.eye / 2
+        mark = Mark(wish.word, wish.x / sizes.scale, wish.y / sizes.scale, height)
+        plan.marks.setdefault(body, []).append(mark)
 
 
 def refuse_letters(name: str, word: str) -> None:

@@ -11,7 +11,6 @@ import cadquery as cq
 from mbsd import Mechanism, Solution
 from mechanisms.stages.automatic.assembly import (
     ROD,
-    Wish,
     back_plate,
     built,
     fitted,
@@ -26,7 +25,7 @@ from mechanisms.stages.automatic.features import laid_out
 from mechanisms.stages.automatic.layout.items import Heights, Need, heights
 from mechanisms.stages.automatic.layout.layout import Layout, Springs
 from mechanisms.stages.automatic.layout.motion import poses_of, times_of
-from mechanisms.stages.automatic.layout.plan import Plan, build
+from mechanisms.stages.automatic.layout.plan import Mark, Plan, build
 from mechanisms.stages.automatic.layout.sizes import (
     THINNEST,
     Sizes,
@@ -99,7 +98,7 @@ class Automatic:
         self._joined: list[Joined] = []
         self._left_out: set[str] = set()
         self._touching: set[tuple[str, str]] = set()
-        self._marks: list[Wish] = []
+        self._marks: list[tuple[str, Mark]] = []
         self._base_under: list[Point] = []
         self._flywheels: set[str] = set()
 
@@ -127,7 +126,7 @@ class Automatic:
         height. Pins, bushings and washers that it would have carried are part of what is replaced.
         """
         self._known(body)
-        if any(body == mark.body for mark in self._marks):
+        if body in dict(self._marks):
             raise UserError(f"{self.m.name}: '{body}' is engraved; engrave its solids (shared/shapes/engraving.py)")
         self._replaced[body] = list(solids)
 
@@ -155,7 +154,7 @@ class Automatic:
         refuse_letters(self.m.name, word)
         if body in self._replaced:
             raise UserError(f"{self.m.name}: '{body}' is replaced; engrave its solids (shared/shapes/engraving.py)")
-        self._marks.append(Wish(body, word, at, height))
+        self._marks.append((body, Mark(word, *at, height or 0.0)))
 
     def base_under(self, *places: Point) -> None:
         """Let the base plate and roads on it reach places (x, y) of ground (mm), besides all that stands on it.
@@ -173,7 +172,7 @@ class Automatic:
         Where mechanism.py gives it no mass, that is estimated. Raises UserError for the last body that moves.
         """
         self._known(body)
-        wished = [self._materials, self._layers, self._replaced, {mark.body for mark in self._marks}]
+        wished = [self._materials, self._layers, self._replaced, dict(self._marks)]
         if any(body in wishes for wishes in wished):
             raise UserError(
                 f"{self.m.name}: '{body}' has a material, a layer, a word or solids, so it cannot be left out too"

@@ -13,7 +13,7 @@ from mbsd.cams import CamProfile
 from mbsd.model.body import Marker
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
-from mechanisms.stages.automatic.layout.curves import curve_path, on_body, set_back, turns_left
+from mechanisms.stages.automatic.layout.curves import axes_of, curve_path, on_body, set_back, turns_left
 from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Levels, Need, Reach
 from mechanisms.stages.automatic.layout.layout import Feature, Layout
 from mechanisms.stages.automatic.layout.plan import Plan, build, kind
@@ -124,13 +124,8 @@ class Cam(Feature):
 
 
 @kind("cam_roller")
-def rollers(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """Return one feature for each joint."""
-    return [_cam(m, joint, layout) for joint in joints]
-
-
 @kind("cam_flat")
-def faces(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
+def gather_cams(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
     """Return one feature for each joint."""
     return [_cam(m, joint, layout) for joint in joints]
 
@@ -158,8 +153,7 @@ def cut_outline(m: Mechanism, joint: Joint, marker: Marker, metre: float) -> np.
     profile = _profile(joint)
     if profile.undercut:
         raise UserError(f"{m.name}: cam of joint '{joint.name}' cannot be cut: {profile.problems[0]}")
-    c, s = math.cos(marker.angle), math.sin(marker.angle)
-    return metre * profile.outline @ np.array([[c, s], [-s, c]])
+    return metre * profile.outline @ axes_of(marker)
 
 
 def pushing_cam(touch: Joint, layout: Layout) -> list[Feature]:
@@ -200,7 +194,7 @@ def with_room(path: np.ndarray, back: float, touch: Joint | Force, layout: Layou
 
 
 def pushing_extent(touch: Joint | Force) -> Extent:
-    """Return what :func:`roller_extent` does, for a contact with a closed curve."""
+    """Return what :func:`cam_extent` does, for a contact with a closed curve."""
     away, roller = np.hypot(*np.array(touch.params["points"], dtype=float).T), touch.params["radius"]
     least = ((float(away.min()), BASE), (roller, ROLLER)) if roller > 0 else ((float(away.min()), BASE + POINT),)
     return Extent(((touch.i, float(away.max())), (touch.j, roller)), least)
@@ -226,20 +220,15 @@ def _profile(joint: Joint) -> CamProfile:
 
 
 @extent("cam_roller")
-def roller_extent(joint: Joint, solution: Solution) -> Extent:
-    """Return the disc and roller; a hub in the base circle, a pin in the roller."""
-    profile = _profile(joint)
-    base, roller = profile.sizes["base_radius"], profile.sizes["roller_radius"]
-    farthest = float(np.hypot(*profile.outline.T).max())
-    return Extent(((joint.i, farthest), (joint.j, roller)), ((base, BASE), (roller, ROLLER)))
-
-
 @extent("cam_flat")
-def face_extent(joint: Joint, solution: Solution) -> Extent:
-    """Return the disc; a hub in its base circle."""
+def cam_extent(joint: Joint, solution: Solution) -> Extent:
+    """Return the disc with a hub in its base circle, and the roller with a pin in it where there is one."""
     profile = _profile(joint)
-    farthest = float(np.hypot(*profile.outline.T).max())
-    return Extent(((joint.i, farthest),), ((profile.sizes["base_radius"], BASE),))
+    farthest, base = float(np.hypot(*profile.outline.T).max()), (profile.sizes["base_radius"], BASE)
+    if profile.flat:
+        return Extent(((joint.i, farthest),), (base,))
+    roller = profile.sizes["roller_radius"]
+    return Extent(((joint.i, farthest), (joint.j, roller)), (base, (roller, ROLLER)))
 
 
 # The solids of a cam (rmm): its disc, and the roller on its pin, or the shoe.

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice, product
-from typing import Protocol
 
 from mechanisms.stages.automatic.layout.layers import ALL, Purse, Undecided, blocking, find_layers
 from mechanisms.stages.automatic.layout.layout import Layout, Springs
@@ -108,16 +107,11 @@ MOST_WEBS = 60
 """So many ways to build a body of two webs are tried."""
 
 
-class LayoutOf(Protocol):
-    """Makes the layout with pins of a size, with springs, and with tubes beside arms."""
+type LayoutOf = Callable[..., Layout]
+"""Makes the layout with pins of a size, with springs, and with tubes beside arms.
 
-    def __call__(
-        self, size: Sizes, springs: Springs, tubes: bool, tall: bool = False, pointers: bool = False
-    ) -> Layout:
-        """``tall``: with styluses that stand up, not flush ones; ``pointers``: with those of points on rims."""
-        ...
-
-
+``tall``: with styluses that stand up, not flush ones; ``pointers``: with those of points on rims.
+"""
 type Outcome = tuple[Layout, dict[str, int]]
 
 

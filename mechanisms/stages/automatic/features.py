@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import mechanisms.stages.automatic.kinds  # noqa: F401  (enters them)
@@ -12,8 +12,8 @@ from mbsd.model.joint import Joint
 from mechanisms.stages.automatic.body_shapes import Joined
 from mechanisms.stages.automatic.layout.items import Anchor, Heights
 from mechanisms.stages.automatic.layout.layout import Feature, Layout
-from mechanisms.stages.automatic.layout.plan import CONTACT_KINDS, DRIVER_KINDS, FORCE_KINDS, KINDS, Gather, Plan
-from mechanisms.stages.automatic.layout.sizes import ROD
+from mechanisms.stages.automatic.layout.plan import CONTACT_KINDS, DRIVER_KINDS, FORCE_KINDS, KINDS, Plan
+from mechanisms.stages.automatic.layout.sizes import ROD, Kinds
 from mechanisms.stages.automatic.pins.free_bodies import free_bodies, styluses, weights
 from mechanisms.stages.automatic.pins.pins import add_poses
 from mechanisms.stages.automatic.pins.stops import stops
@@ -85,11 +85,11 @@ def gathered(layout: Layout) -> list[Feature]:
     return features + _loose_eyes(loose, features, layout)
 
 
-def _gather_kinds[Thing: (Force, Joint)](
-    kinds: Mapping[str, Gather[Thing]], m: Mechanism, things: Iterable[Thing], layout: Layout
+def _gather_kinds(
+    kinds: Kinds[Sequence[Feature]], m: Mechanism, things: Iterable[Force | Joint], layout: Layout
 ) -> list[Feature]:
     """Return features of forces, contacts or drivers whose kinds have parts; the others need none."""
-    by_kind: dict[str, list[Thing]] = {}
+    by_kind: dict[str, list[Force | Joint]] = {}
     for thing in things:
         if thing.kind.name in kinds and not layout.apart.intersection(thing.bodies):
             by_kind.setdefault(thing.kind.name, []).append(thing)

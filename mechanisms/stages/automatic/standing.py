@@ -12,6 +12,7 @@ import numpy as np
 
 from mechanisms.stages.automatic.layout.plan import free_name
 from mechanisms.stages.automatic.layout.planar import convex_hull
+from mechanisms.stages.automatic.layout.planar import placed as placed_points
 from mechanisms.stages.automatic.layout.sizes import Sizes
 from shared.contract import Mount
 from shared.contract.materials import MATERIALS
@@ -179,10 +180,8 @@ def standing(bodies: Mapping[str, Sequence[Solid]], poses: Mapping[str, np.ndarr
 
 def _seen(place: np.ndarray, poses: np.ndarray, upright: Upright | None) -> np.ndarray:
     """Return (T, 2) a place of a body's frame over its poses (T, 3), as right and up; without a turn as it is."""
-    c, s = np.cos(poses[:, 2]), np.sin(poses[:, 2])
-    x = poses[:, 0] + c * place[0] - s * place[1]
-    y = poses[:, 1] + s * place[0] + c * place[1]
-    return np.column_stack([x, y]) if upright is None else upright.seen(np.column_stack([x, y]))
+    way = placed_points(place[None], poses)[:, 0]
+    return way if upright is None else upright.seen(way)
 
 
 def named(made: Sequence[Solid], bodies: Mapping[str, Sequence[Solid]]) -> list[Solid]:

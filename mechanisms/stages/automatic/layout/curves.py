@@ -50,8 +50,13 @@ def profile_path(profile: Curve, first: float, last: float) -> np.ndarray:
 
 def on_body(path: np.ndarray, marker: Marker, layout: Layout) -> np.ndarray:
     """Return places (n, 2) in the axes of a marker (m) in those of its body (rmm)."""
+    return layout.sizes.of_metres(1.0) * path @ axes_of(marker) + layout.place(marker)
+
+
+def axes_of(marker: Marker) -> np.ndarray:
+    """Return (2, 2) unit vectors along the axes of a marker, in those of its body: a matrix that turns rows."""
     c, s = math.cos(marker.angle), math.sin(marker.angle)
-    return layout.sizes.of_metres(1.0) * path @ np.array([[c, s], [-s, c]]) + layout.place(marker)
+    return np.array([[c, s], [-s, c]])
 
 
 def farthest(points: Sequence[Sequence[float]]) -> float:
@@ -101,8 +106,7 @@ def end_ways(points: Sequence[Sequence[float]], marker: Marker) -> np.ndarray:
     from mbsd.model import plane_curves
 
     ways = plane_curves.end_ways(*plane_curves.curve_pieces(np.array(points, dtype=float), False))
-    c, s = math.cos(marker.angle), math.sin(marker.angle)
-    return ways @ np.array([[c, s], [-s, c]])
+    return ways @ axes_of(marker)
 
 
 def continued(path: np.ndarray, ways: np.ndarray, ahead: float, step: float) -> tuple[np.ndarray, int]:

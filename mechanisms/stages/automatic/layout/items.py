@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 from mechanisms.stages.automatic.layout.planar import Rounded
 
@@ -54,11 +55,13 @@ class Reach:
     high: int = 0
     base: bool = False
     top: bool = False
+    choice: ClassVar[None] = None
+    """Name of the choice that decides between several ends; here there is one pair."""
 
     @property
-    def ends(self) -> dict[str | None, tuple[Ends, ...]]:
-        """By the choice that decides between them."""
-        return {None: ((None if self.base else self.low, None if self.top else self.high),)}
+    def ends(self) -> tuple[Ends, ...]:
+        """Both ends, of each choice in turn."""
+        return ((None if self.base else self.low, None if self.top else self.high),)
 
 
 @dataclass(frozen=True)
@@ -68,10 +71,7 @@ class PinReach:
     bodies: tuple[str, ...]
     choice: str
 
-    @property
-    def ends(self) -> dict[str | None, tuple[Ends, ...]]:
-        """As :attr:`Reach.ends`."""
-        return {self.choice: ((1, 1), (-1, -1))}
+    ends: ClassVar[tuple[Ends, ...]] = ((1, 1), (-1, -1))
 
 
 @dataclass(frozen=True)
@@ -87,9 +87,9 @@ class PivotReach:
     flush: bool = False
 
     @property
-    def ends(self) -> dict[str | None, tuple[Ends, ...]]:
-        """As :attr:`Reach.ends`."""
-        return {self.choice: ((None, 0 if self.flush else 1), (-1, None))}
+    def ends(self) -> tuple[Ends, ...]:
+        """Ends of a pin that stands, and of one that hangs."""
+        return (None, 0 if self.flush else 1), (-1, None)
 
 
 type AnyReach = Reach | PinReach | PivotReach
@@ -116,11 +116,6 @@ class Item:
     """A word for what stands on ground; what has another such word must keep clear of it."""
 
 
-def choice_of(reach: AnyReach) -> str | None:
-    """Return the choice that an item's heights depend on, if there is one."""
-    return next(iter(reach.ends))
-
-
 def spans_meet(a: tuple[int, int] | None, b: tuple[int, int] | None) -> bool:
     """Return True if two spans share a half layer."""
     return a is not None and b is not None and a[0] <= b[1] and b[0] <= a[1]
@@ -131,10 +126,10 @@ def span(reach: AnyReach, levels: Levels) -> tuple[int, int] | None:
 
     While a choice is open: what both have in common.
     """
-    ((choice, ends),) = reach.ends.items()
-    chosen = levels.get(choice) if choice is not None else 0
+    chosen = levels.get(reach.choice) if reach.choice is not None else 0
     known = [2 * levels[body] for body in reach.bodies if body in levels]
-    spans = [_placed(low, high, known) for low, high in (ends if chosen is None else ends[chosen : chosen + 1])]
+    ends = reach.ends if chosen is None else reach.ends[chosen : chosen + 1]
+    spans = [_placed(low, high, known) for low, high in ends]
     if any(span is None for span in spans):
         return None
     low, high = max(span[0] for span in spans if span), min(span[1] for span in spans if span)

@@ -9,7 +9,7 @@ from itertools import pairwise
 from pysat.card import ITotalizer
 from pysat.solvers import Solver
 
-from mechanisms.stages.automatic.layout.items import BASE, AnyReach, Ends, Item, PivotReach, Reach, choice_of
+from mechanisms.stages.automatic.layout.items import BASE, AnyReach, Ends, Item, PivotReach, Reach
 
 # The rules of the layers as clauses for a satisfiability solver.
 #
@@ -108,12 +108,11 @@ class Clauses:
 
     def _ends(self, reach: AnyReach) -> list[tuple[list[int], Ends]]:
         """Return ends of an item, each with literals of which one is true where the choice is another."""
-        ((choice, ends),) = reach.ends.items()
-        if choice is None:
+        if reach.choice is None:
             # without bodies an item with a base is on the base
-            return [([], ends[0] if self._layered(reach) else (None, BASE))]
-        literal = self.choices[choice]
-        return [([literal], ends[0]), ([-literal], ends[1])]
+            return [([], reach.ends[0] if self._layered(reach) else (None, BASE))]
+        literal = self.choices[reach.choice]
+        return [([literal], reach.ends[0]), ([-literal], reach.ends[1])]
 
     def _layered(self, reach: AnyReach) -> tuple[str, ...]:
         """Return the bodies of an item that have a layer."""
@@ -123,10 +122,10 @@ class Clauses:
         """Return literals that are true for every step from a layer to the next that a pin goes through."""
         literals: list[int] = []
         for item in items:
-            ((choice, ends),) = item.reach.ends.items()
+            choice, (low, high) = item.reach.choice, item.reach.ends[0]
             bodies = tuple(dict.fromkeys(self.heads[body] for body in self._layered(item.reach)))
-            if ends[0][0] is not None:
-                literals += [] if ends[0][1] is None else self._crossed(bodies, bodies, [])
+            if low is not None:
+                literals += [] if high is None else self._crossed(bodies, bodies, [])
                 continue
             given = [] if choice is None else [self.choices[choice]]
             literals += self._crossed((None,), bodies, given)
@@ -189,7 +188,7 @@ class Clauses:
 
 def choices_of(items: Sequence[Item]) -> list[str]:
     """Return the choices of items, without repeats."""
-    return list(dict.fromkeys(c for item in items if (c := choice_of(item.reach)) is not None))
+    return list(dict.fromkeys(c for item in items if (c := item.reach.choice) is not None))
 
 
 # The budget of the search for layers, in conflicts of the solver: no clock, so it ends the same everywhere.
@@ -267,7 +266,7 @@ class Problem:
     @property
     def most(self) -> int:
         """So many layers are enough for every order: each a step above the last, as high as items need at most."""
-        ends = [pair for item in self.items for both in item.reach.ends.values() for pair in both]
+        ends = [pair for item in self.items for pair in item.reach.ends]
         lowest = min((low for low, _ in ends if low is not None), default=0)
         highest = max((high for _, high in ends if high is not None), default=0)
         step = max((highest - lowest) // 2 + 1, 1)

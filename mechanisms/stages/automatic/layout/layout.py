@@ -130,10 +130,8 @@ class Layout:
 
     def seen(self, body: str, place: tuple[float, float], other: str) -> np.ndarray:
         """Return (T, 2) a place of ``body`` in the frame of another body over the motion (rmm)."""
-        pose, frame = self.poses[body], self.poses[other]
-        c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
-        x = pose[:, 0] + c * place[0] - s * place[1] - frame[:, 0]
-        y = pose[:, 1] + s * place[0] + c * place[1] - frame[:, 1]
+        frame = self.poses[other]
+        x, y = (placed(np.array([place]), self.poses[body])[:, 0] - frame[:, :2]).T
         c, s = np.cos(frame[:, 2]), np.sin(frame[:, 2])
         return np.stack([c * x + s * y, c * y - s * x], axis=1)
 

@@ -54,6 +54,14 @@ def around(points: Sequence[tuple[float, float]], radius: float) -> Rounded:
     return Rounded(convex_hull(np.array(points, dtype=float)), radius)
 
 
+def box(at: tuple[float, float], along: tuple[float, float], low: float, high: float, half: float) -> Rounded:
+    """Return a rectangle about a line through ``at``, from ``low`` to ``high`` along it and ``half`` to either side."""
+    u, place = np.array(along), np.array(at)
+    left = np.array([-u[1], u[0]])
+    corners = [place + s * u + q * left for s in (low, high) for q in (-half, half)]
+    return around([(float(p[0]), float(p[1])) for p in corners], 1e-6)
+
+
 def convex_hull(points: np.ndarray, tolerance: float = 1e-9) -> np.ndarray:
     """Return (m, 2) corners of the convex hull, counter-clockwise, none on a line between two others (monotone chain).
 

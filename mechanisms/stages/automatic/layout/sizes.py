@@ -13,6 +13,7 @@ from mbsd import Mechanism, Solution
 from mbsd.model.body import Marker
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
+from mechanisms.stages.automatic.layout.planar import placed
 from mechanisms.stages.loading.wishes import wished_scale
 from mechanisms.stages.parts_files import TOLERANCE
 from shared.shapes.pin import Head, Pivot
@@ -49,20 +50,24 @@ class Extent:
     """Lengths of the model (m), each with the least that it may be in rmm."""
 
 
-type ExtentOf = Callable[[Any, Solution], Extent]
-"""Extent of a joint, a contact or a force."""
+class Kinds[Result](dict[str, Callable[..., Result]]):
+    """Functions by the names of the kinds of joints, forces, contacts or drivers that they serve."""
 
-EXTENTS: dict[str, ExtentOf] = {}
+    def enter[Served: Callable[..., Any]](self, name: str) -> Callable[[Served], Served]:
+        """Return a decorator that enters a function for a kind. Raises ValueError for a second one."""
+
+        def entered(function: Served) -> Served:
+            if name in self:
+                raise ValueError(f"{name}: registered twice")
+            self[name] = function
+            return function
+
+        return entered
 
 
-def extent(name: str) -> Callable[[ExtentOf], ExtentOf]:
-    """Enter what joints, contacts or forces of a kind say of their size."""
-
-    def enter(of: ExtentOf) -> ExtentOf:
-        EXTENTS[name] = of
-        return of
-
-    return enter
+EXTENTS: Kinds[Extent] = Kinds()
+"""Functions of a joint, contact or force and the solution that return its extent."""
+extent = EXTENTS.enter
 
 
 @dataclass(frozen=True)
@@ -151,10 +156,7 @@ def _swept(solution: Solution, body: str, at: np.ndarray) -> np.ndarray:
     if body == "ground":
         return at
     view = solution.body(body)
-    c, s = np.cos(view.theta)[:, None], np.sin(view.theta)[:, None]
-    x = view.x[:, None] + c * at[:, 0] - s * at[:, 1]
-    y = view.y[:, None] + s * at[:, 0] + c * at[:, 1]
-    return np.stack([x.ravel(), y.ravel()], axis=1)
+    return placed(at, np.column_stack([view.x, view.y, view.theta])).reshape(-1, 2)
 
 
 def distance(joint: Joint, solution: Solution) -> float:

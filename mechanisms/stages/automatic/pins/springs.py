@@ -259,22 +259,12 @@ def _is_coil(force: Force | Joint) -> bool:
 @force_kind("gas_cycle")
 @force_kind("gas_strut")
 @force_kind("hydraulic_cylinder")
-def gather(m: Mechanism, forces: list[Force], layout: Layout) -> list[Feature]:
-    """Gather springs of all kinds at the first kind, since they share studs."""
-    return _all_at(forces[0], m, layout)
-
-
 @contact_kind(ROPE)
 @driver_kind(LINEAR)
-def gather_others(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """Gather ropes and linear drivers, in the same way."""
-    return _all_at(joints[0], m, layout)
-
-
-def _all_at(first: Force | Joint, m: Mechanism, layout: Layout) -> list[Feature]:
-    """Return studs first, then what they hold; an empty list except at the first kind."""
+def gather(m: Mechanism, things: Sequence[Force | Joint], layout: Layout) -> list[Feature]:
+    """Return studs first, then the springs, ropes and drivers that share them, of all kinds at the first one."""
     between = stretching(m, layout.apart)
-    if first is not between[0]:
+    if things[0] is not between[0]:
         return []
     springs = [spring for force in between if (spring := _stretching(force, layout)) is not None]
     layout.springs.names[:] = [spring.force for spring in springs]

@@ -11,6 +11,7 @@ import numpy as np
 from mbsd import Mechanism
 from mbsd.model.body import Marker
 from mbsd.model.joint import Joint
+from mechanisms.stages.automatic.layout.planar import placed
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
 
@@ -166,9 +167,7 @@ class Machine:
 
     def path(self, body: str, x: float, y: float) -> np.ndarray:
         """Return (T, 2) a place of a body on ground over the motion."""
-        pose = self.poses[body]
-        c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
-        return np.stack([pose[:, 0] + c * x - s * y, pose[:, 1] + s * x + c * y], axis=1)
+        return placed(np.array([[x, y]]), self.poses[body])[:, 0]
 
 
 # Where along the normal of the plane the joints of a body lie, as the model gives it (mm).

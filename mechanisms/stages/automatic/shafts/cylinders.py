@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.planar import Rounded, around, disc, least_gap
+from mechanisms.stages.automatic.layout.planar import Rounded, around, box, disc, least_gap
 from mechanisms.stages.automatic.shafts.bodies import (
     HUB,
     KNUCKLE_EYE,
@@ -286,8 +286,7 @@ def _has_room(machine: Machine, piston: Piston, foot: np.ndarray, low: float, bo
     if aside + SHANK * bore > (0.5 - ROOM) * bore:
         return False
     wide = (0.5 + WALL) * bore
-    ends = [foot + s * along + q * left for s in (low, low + bore) for q in (-wide, wide)]
-    wall = around([(float(x), float(y)) for x, y in ends], 1e-6)
+    wall = box((foot[0], foot[1]), piston.along, low, low + bore, wide)
     still = machine.poses["ground"][::EVERY]
     for other in machine.pistons.values():
         link = machine.links.get(other.link or "")

@@ -9,9 +9,9 @@ from itertools import pairwise
 
 import cadquery as cq
 
-from mechanisms.stages.automatic.layout.planar import Rounded, around
+from mechanisms.stages.automatic.layout.planar import Rounded, around, box
 from mechanisms.stages.automatic.shafts.bodies import Machine, Ram, RamPin
-from mechanisms.stages.automatic.shafts.passing import Takes, box
+from mechanisms.stages.automatic.shafts.passing import Takes
 from mechanisms.stages.automatic.shafts.shaft_plan import Measures
 from mechanisms.stages.automatic.shafts.valves import along_x
 from shared.shapes.build import extruded

@@ -11,11 +11,11 @@ import numpy as np
 
 from mbsd.model.force import Force
 from mechanisms.stages.automatic.cams import cut_outline
-from mechanisms.stages.automatic.layout.planar import around
+from mechanisms.stages.automatic.layout.planar import around, box
 from mechanisms.stages.automatic.layout.sizes import CLEAR
 from mechanisms.stages.automatic.shafts.bodies import Machine, Mounted, Valve, marker_on, place
 from mechanisms.stages.automatic.shafts.cylinders import HEAD, Cylinder
-from mechanisms.stages.automatic.shafts.passing import Takes, box
+from mechanisms.stages.automatic.shafts.passing import Takes
 from mechanisms.stages.automatic.shafts.shaft_plan import Measures
 from shared.shapes.build import extruded, turned
 from shared.shapes.cams import cam_disc, evenly

@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Protocol
 
 import cadquery as cq
 import numpy as np
@@ -33,49 +32,16 @@ from shared.stage.paths import shown_file
 # A crank that moves two yokes, or indexes two Geneva wheels, has its slots on one side of it or on both.
 
 
-class InSlot(Protocol):
-    """A pin in a slot: a joint's name, the bodies of slot and pin, and the pin's place on its body (rmm)."""
-
-    @property
-    def name(self) -> str:
-        """Name of the joint."""
-        ...
-
-    @property
-    def slot(self) -> str:
-        """The body that has the slot."""
-        ...
-
-    @property
-    def pin(self) -> str:
-        """The body that has the pin."""
-        ...
-
-    @property
-    def pin_at(self) -> tuple[float, float]:
-        """Where the pin is on its body (rmm)."""
-        ...
-
-    @property
-    def layer(self) -> str:
-        """Name that decides the layer of the slot."""
-        ...
-
-
-def common(slot: InSlot, layout: Layout) -> list[InSlot]:
+def common(slot: Slot, layout: Layout) -> list[Slot]:
     """Return all through slots in which the pin of ``slot`` runs, this one among them."""
-    through: list[InSlot] = [
-        s for s in (getattr(feature, "runs_through", None) for feature in layout.features) if s is not None
-    ]
+    every = (getattr(feature, "runs_through", None) for feature in layout.features)
+    through = [other for other in every if isinstance(other, Slot)]
     return [other for other in through if other.pin == slot.pin and math.dist(other.pin_at, slot.pin_at) < SAME]
 
 
-def passed(slot: InSlot, layout: Layout) -> frozenset[str]:
+def passed(slot: Slot, layout: Layout) -> frozenset[str]:
     """Return names of the items that the pin passes through by design."""
-    names = [
-        (other.slot, f"the slotted plate of {other.name}", f"the wheel of {other.name}")
-        for other in common(slot, layout)
-    ]
+    names = ((o.slot, f"the slotted plate of {o.name}", f"the wheel of {o.name}") for o in common(slot, layout))
     return frozenset(name for here in names for name in here)
 
 
@@ -312,7 +278,7 @@ def slot_pin(
     In a groove of a ``depth`` the pin ends. Through slots at one place of the body have one pin. With a
     ``roller_diameter`` of 0 the pin is bare.
     """
-    through: list[InSlot] = [slot] if roller_diameter is not None or depth is not None else common(slot, plan.layout)
+    through: list[Slot] = [slot] if roller_diameter is not None or depth is not None else common(slot, plan.layout)
     outer = plan.layout.sizes.roller if roller_diameter is None else roller_diameter
     large = outer > plan.layout.sizes.head.diameter + 2 * SEEN
     if outer > 0:
@@ -321,7 +287,7 @@ def slot_pin(
         _pin(through, large, depth, plan, heights)
 
 
-def _is_below(slot: InSlot, heights: Heights) -> bool:
+def _is_below(slot: Slot, heights: Heights) -> bool:
     """Return True if the pin comes from below."""
     return slot.pin == "ground" or heights.bottom(slot.pin) < heights.bottom(slot.layer)
 
@@ -352,7 +318,7 @@ def _no_wall(slot: Slot, outer: float, layout: Layout) -> str:
     )
 
 
-def _pin(through: list[InSlot], large: bool, depth: float | None, plan: Plan, heights: Heights) -> None:
+def _pin(through: list[Slot], large: bool, depth: float | None, plan: Plan, heights: Heights) -> None:
     """From the lowest to the highest of the slots, or from its body, with a boss and a washer on each side of that."""
     sizes = plan.layout.sizes
     pivot, fit, first = sizes.pivot, sizes.pivot.fit, through[0]

@@ -310,18 +310,9 @@ def extent_of_rack(joint: Joint, solution: Solution) -> Extent:
 @kind(BELTS)
 @kind(RACKS)
 @kind(GEARS)
-def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """Gather all wheels, racks and pulleys of the mechanism, in phase, when the first of these kinds is asked for."""
-    return _gathered(m, layout)
-
-
 @force_kind(PLAYING)
-def gather_playing(m: Mechanism, forces: list[Force], layout: Layout) -> list[Feature]:
-    """Gather wheels if gears with play are the first kind."""
-    return _gathered(m, layout)
-
-
-def _gathered(m: Mechanism, layout: Layout) -> list[Feature]:
+def gather(m: Mechanism, things: Sequence[Joint | Force], layout: Layout) -> list[Feature]:
+    """Return all wheels, racks and pulleys of the mechanism, in phase, at the first of these kinds."""
     if any(layout.wheels.values()):
         return []
     known: list[Wheel] = []

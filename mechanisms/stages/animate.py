@@ -26,11 +26,7 @@ QUANTITIES = ("velocities", "accelerations", "forces", "reactions", "energy")
 VIEWS = (*QUANTITIES, "skeleton", "each")
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite", "matplotlib", "pillow", "imageio-ffmpeg")
 SUFFIXES = (".mp4", ".gif")
-_STAGE = (
-    "animate",
-    "loading/loading",
-    *(f"solve/{name}" for name in ("solving", "masses", "skeleton_file")),
-)
+_STAGE = ("animate", "loading/loading", *(f"solve/{name}" for name in ("solving", "masses", "skeleton_file")))
 SOURCES = [ROOT / "mechanisms" / "stages" / f"{name}.py" for name in _STAGE]
 
 

@@ -12,15 +12,7 @@ from shared.contract.quantity import counted
 from shared.stage.console import warn
 from shared.stage.errors import UserError
 from shared.stage.memory import remembered
-from shared.stage.paths import (
-    Out,
-    all_mechanisms,
-    mechanism_file,
-    mechanism_names,
-    out_root,
-    unfit_names,
-    variants_in,
-)
+from shared.stage.paths import Out, all_mechanisms, mechanism_file, mechanism_names, out_root, unfit_names, variants_in
 from shared.stage.stages import outdated_by, results_of
 
 

@@ -349,8 +349,7 @@ def extent_of(joint: Joint, solution: Solution) -> Extent:
     apart, radius, slots = distance(joint, solution), joint.params["radius"], joint.params["slots"]
     rim = apart * math.cos(math.pi / slots)
     return Extent(
-        ((joint.i, radius), (joint.j, rim)),
-        ((apart - radius, HUB), (radius, PIN_CIRCLE), (apart - rim, NEAR)),
+        ((joint.i, radius), (joint.j, rim)), ((apart - radius, HUB), (radius, PIN_CIRCLE), (apart - rim, NEAR))
     )
 
 

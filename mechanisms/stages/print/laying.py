@@ -81,10 +81,7 @@ def _within(x: float, y: float, bed: tuple[float, float]) -> bool:
 
 def best_face(corners: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """Return (3,): the normal of the face to lie on; straight down where there is no flat face to stand on."""
-    across = np.cross(
-        corners[faces[:, 1]] - corners[faces[:, 0]],
-        corners[faces[:, 2]] - corners[faces[:, 0]],
-    )
+    across = np.cross(corners[faces[:, 1]] - corners[faces[:, 0]], corners[faces[:, 2]] - corners[faces[:, 0]])
     twice = np.linalg.norm(across, axis=1)
     normals = across / np.where(twice > 0, twice, 1.0)[:, None]
     candidates: list[tuple[float, bool, tuple[float, ...]]] = []

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -38,6 +40,9 @@ ROPE, LINEAR = "rope", "drive_distance"
 """The kinds of contact and of driver that do."""
 NEAR = 0.02
 """Studs that are nearer to each other, as a part of the whole, are on one place, or do not decide the scale."""
+
+
+type Place = tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -89,56 +94,50 @@ class Lengths:
 
 def lengths_of(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) -> Lengths:
     """Return lengths of a mechanism and its motion, without bodies that are ``left_out``."""
-    places: dict[str, list[tuple[float, float]]] = {}
-    pinned: dict[str, list[tuple[float, float]]] = {}
-    pins: dict[str, list[str]] = {}
-    studs: dict[str, list[tuple[float, float]]] = {}
+    places, studs = defaultdict[str, list[Place]](list), defaultdict[str, list[Place]](list)
+    pins = defaultdict[str, list[tuple[str, Place]]](list)
     least: list[tuple[float, str, float]] = []
-    for joint in m.joints.values():
-        for marker in (joint.i, joint.j):
-            if marker.body.name in left_out:
-                continue
-            places.setdefault(marker.body.name, []).append((marker.x, marker.y))
-            if joint.kind.pair == "pin" or joint.kind.name == ROD or (joint.kind.pair == "slot" and marker is joint.j):
-                pinned.setdefault(marker.body.name, []).append((marker.x, marker.y))
-                pins.setdefault(marker.body.name, []).append(joint.name)
-    for force in m.forces.values():
-        for marker in (force.i, force.j) if force.kind.journal is not None else ():
-            if marker.body.name not in left_out:
-                places.setdefault(marker.body.name, []).append((marker.x, marker.y))
-                pinned.setdefault(marker.body.name, []).append((marker.x, marker.y))
-                pins.setdefault(marker.body.name, []).append(force.name)
+    for thing in holding(m):
+        pair = getattr(thing.kind, "pair", "pin")  # forces that hold are pins with play
+        for marker in (thing.i, thing.j):
+            body, place = marker.body.name, (marker.x, marker.y)
+            if body not in left_out:
+                places[body].append(place)
+                if pair == "pin" or thing.kind.name == ROD or (pair == "slot" and marker is thing.j):
+                    pins[body].append((thing.name, place))
     for thing in (*m.joints.values(), *m.contacts.values(), *m.forces.values()):
         if thing.kind.name in EXTENTS and not any(body in left_out for body in thing.bodies):
             own = EXTENTS[thing.kind.name](thing, solution)
             least += [(length * LINK / wanted, f"a length of '{thing.name}'", length) for length, wanted in own.least]
             for marker, radius in own.radii:
-                round_it = [(marker.x + radius * u, marker.y + radius * v) for u, v in _ROUND]
-                places.setdefault(marker.body.name, []).extend(round_it)
+                places[marker.body.name] += [(marker.x + radius * u, marker.y + radius * v) for u, v in _ROUND]
     for element in stretching(m, left_out):
         for marker in (element.i, element.j):
-            places.setdefault(marker.body.name, []).append((marker.x, marker.y))
-            studs.setdefault(marker.body.name, []).append((marker.x, marker.y))
-    held = [*m.joints.values(), *(force for force in m.forces.values() if force.kind.journal is not None)]
-    jointed = {name for joint in held for name in joint.bodies}
+            places[marker.body.name].append((marker.x, marker.y))
+            studs[marker.body.name].append((marker.x, marker.y))
+    jointed = {name for thing in holding(m) for name in thing.bodies}
     for name, body in m.bodies.items():
         if name not in (*jointed, *left_out, "ground"):
-            places.setdefault(name, []).append(body.com)
+            places[name].append(body.com)
         if body.length is not None and name not in left_out:
-            places.setdefault(name, []).extend([(0.0, 0.0), (body.length, 0.0)])
+            places[name] += [(0.0, 0.0), (body.length, 0.0)]
     seen = np.concatenate([[[0.0, 0.0]], *[_swept(solution, body, np.array(at)) for body, at in places.items()]])
     overall = float(np.ptp(seen[1:], axis=0).max()) if len(seen) > 1 else 1.0
     apart = [
-        (d := math.dist(at[i], at[k]), f"the distance of '{pins[body][k]}' and '{pins[body][i]}' on '{body}'", d)
-        for body, at in pinned.items()
-        for i in range(len(at))
-        for k in range(i)
+        (d := math.dist(a, b), f"the distance of '{first}' and '{second}' on '{body}'", d)
+        for body, on_it in pins.items()
+        for (first, a), (second, b) in combinations(on_it, 2)
     ]
     for body, at in studs.items():
-        beside = [math.dist(a, b) for i, a in enumerate(at) for b in [*at[:i], *pinned.get(body, [])]]
+        beside = [math.dist(a, b) for i, a in enumerate(at) for b in [*at[:i], *(place for _, place in pins[body])]]
         words = f"the distance of pins or ends of springs on '{body}'"
         least += [(d * LINK / STUD, words, d) for d in beside if d > NEAR * overall]
     return Lengths([length for length in [*apart, *least] if length[0] > 1e-3 * overall], overall)
+
+
+def holding(m: Mechanism) -> list[Joint | Force]:
+    """Return joints, and forces that hold two bodies together as joints do."""
+    return [*m.joints.values(), *(force for force in m.forces.values() if force.kind.journal is not None)]
 
 
 def stretching(m: Mechanism, left_out: Collection[str] = ()) -> list[Force | Joint]:

@@ -14,6 +14,7 @@ from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Leve
 from mechanisms.stages.automatic.layout.layout import Feature, Layout
 from mechanisms.stages.automatic.layout.plan import Plan
 from mechanisms.stages.automatic.layout.planar import Rounded, disc
+from mechanisms.stages.automatic.layout.sizes import holding
 from mechanisms.stages.automatic.pins.pins import Pin
 from mechanisms.stages.automatic.pins.springs import Stud
 from shared.contract.materials import MATERIALS
@@ -217,8 +218,7 @@ class FreeBody(Feature):
 def free_bodies(layout: Layout) -> list[Feature]:
     """Return one for each body without a joint or a shape of its own."""
     m = layout.m
-    held = [*m.joints.values(), *(force for force in m.forces.values() if force.kind.journal is not None)]
-    shaped = {body for joint in held for body in joint.bodies}
+    shaped = {body for thing in holding(m) for body in thing.bodies}
     others = [feature for feature in layout.features if not isinstance(feature, Stud)]
     shaped |= {item.body for feature in others for item in feature.items(layout)}
     names = [name for name in layout.bodies if name not in shaped]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -182,6 +183,16 @@ class Pin(Feature):
             yield Need(BASE, sizes.pedestal + pivot.washer_room + running)
 
 
+def pins_on(layout: Layout, body: str) -> list[Pin]:
+    """Return the pins that go through a body."""
+    return [feature for feature in layout.features if isinstance(feature, Pin) and body in feature.places]
+
+
+def pins_at(layout: Layout, body: str, place: tuple[float, float]) -> list[Pin]:
+    """Return the pins at a place of a body (rmm)."""
+    return [pin for pin in pins_on(layout, body) if math.dist(pin.places[body], place) < SAME]
+
+
 @kind("revolute")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
     """Return joints by their pins: those with a common place on a body are one."""
@@ -264,16 +275,14 @@ def _play(m: Mechanism, force: Force, layout: Layout) -> float:
 
 
 def _refuse_shared(m: Mechanism, force: Force, places: dict[str, tuple[float, float]], layout: Layout) -> None:
-    for pin in layout.features:
-        for body, (x, y) in places.items():
-            if isinstance(pin, Pin) and body in pin.places:
-                u, v = pin.places[body]
-                if abs(x - u) < SAME and abs(y - v) < SAME:
-                    raise UserError(
-                        f"{m.name}: clearance joint '{force.name}' and '{pin.name}' are at one place of '{body}'; "
-                        "bodies that share a pin have no play of their own in automatic parts; move one of them, or "
-                        f"write {shown_file(m.name, 'parts')}"
-                    )
+    for body, place in places.items():
+        for pin in pins_on(layout, body):
+            if _same(place, pin.places[body]):
+                raise UserError(
+                    f"{m.name}: clearance joint '{force.name}' and '{pin.name}' are at one place of '{body}'; "
+                    "bodies that share a pin have no play of their own in automatic parts; move one of them, or "
+                    f"write {shown_file(m.name, 'parts')}"
+                )
 
 
 # Built-up cranks: a body of two plates, its webs, that the pin between them joins; a link turns on the pin.
@@ -287,8 +296,7 @@ def webbed(layout: Layout, bodies: Collection[str]) -> Iterable[Layout]:
     the others shared out in every way.
     """
     for body in (body for body in bodies if body in layout.bodies):
-        pins = [pin for pin in layout.features if isinstance(pin, Pin) and body in pin.places]
-        pins.sort(key=lambda pin: not pin.on_ground)
+        pins = sorted(pins_on(layout, body), key=lambda pin: not pin.on_ground)
         free = [pin for pin in pins if not layout.is_held(pin)]
         for joining in free:
             if joining.on_ground or len(joining.places) < 2:

@@ -18,7 +18,7 @@ from mechanisms.stages.automatic.layout.plan import Foot, Plan, build, contact_k
 from mechanisms.stages.automatic.layout.planar import Rounded, disc
 from mechanisms.stages.automatic.layout.sizes import LINEAR, ROPE, stretching
 from mechanisms.stages.automatic.pins.pin_solids import upper_end
-from mechanisms.stages.automatic.pins.pins import SAME, Pin
+from mechanisms.stages.automatic.pins.pins import SAME, Pin, pins_at
 from shared.shapes.base import column
 from shared.shapes.link import Eye
 from shared.shapes.screw import Collar, ball_stud
@@ -276,11 +276,10 @@ def gather(m: Mechanism, things: Sequence[Force | Joint], layout: Layout) -> lis
 
 def _studs(springs: Sequence[Stretching], layout: Layout) -> list[Feature]:
     """Gather studs: ends that share a place of a body, or a pin, share one."""
-    pins = [feature for feature in layout.features if isinstance(feature, Pin)]
     places: list[tuple[str, float, float, Pin | None, list[tuple[Stretching, int]]]] = []
     for spring in springs:
         for k, (body, x, y) in enumerate(spring.ends):
-            pin = next((p for p in pins if body in p.places and math.dist(p.places[body], (x, y)) < SAME), None)
+            pin = next(iter(pins_at(layout, body, (x, y))), None)
             if pin is not None:
                 body, (x, y) = pin.home, pin.places[pin.home]
             for place in places:
@@ -350,12 +349,7 @@ def _lines(stud: Stud, heights: Heights) -> list[float]:
 
 
 def _add(
-    stud: Stud,
-    body: str,
-    shape: cq.Workplane,
-    plan: Plan,
-    heights: Heights,
-    at: tuple[float, float] | None = None,
+    stud: Stud, body: str, shape: cq.Workplane, plan: Plan, heights: Heights, at: tuple[float, float] | None = None
 ) -> None:
     x, y = at or (stud.x, stud.y)
     holds = tuple(Hold(spring.force, spring.z(heights), spring.radius) for spring, _ in stud.ends)

@@ -17,7 +17,7 @@ from mechanisms.stages.automatic.layout.curves import curve_path, farthest, on_b
 from mechanisms.stages.automatic.layout.layout import Feature, Layout
 from mechanisms.stages.automatic.layout.plan import contact_kind, force_kind, kind
 from mechanisms.stages.automatic.layout.sizes import CLEAR, Extent, extent
-from mechanisms.stages.automatic.pins.pins import SAME, Pin
+from mechanisms.stages.automatic.pins.pins import pins_at
 from mechanisms.stages.automatic.rolling.roads import THICK, Road, along
 from mechanisms.stages.automatic.rolling.rounds import Look, Round, round_at
 from mechanisms.stages.automatic.rolling.tracks import circle, rolled_road, touched_path, touched_road, track
@@ -286,9 +286,7 @@ def _set_back(touch: Touch, layout: Layout) -> float:
 
 def _least_radius(touch: Touch, layout: Layout) -> float:
     """Return the least radius of what touches (rmm): that of a nose, or one that holds the eye of a pin there."""
-    body, place, sizes = touch.j.body.name, layout.place(touch.j), layout.sizes
-    pins = [feature for feature in layout.features if isinstance(feature, Pin) and body in feature.places]
-    is_pinned = any(math.dist(pin.places[body], place) < SAME for pin in pins)
+    sizes, is_pinned = layout.sizes, bool(pins_at(layout, touch.j.body.name, layout.place(touch.j)))
     return sizes.eye + CLEAR * sizes.pivot.fit.running + YIELDS if is_pinned else NOSE
 
 

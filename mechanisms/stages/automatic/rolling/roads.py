@@ -147,6 +147,11 @@ class Road(Feature):
             return False
         return bool(np.abs((self.feet - self.path[[-1, 0]]) @ way).max() < 1e-9 * float(way @ way))
 
+    @property
+    def holes(self) -> int:
+        """Number of its holes."""
+        return 0 if self.band is None else len(self.band.holes)
+
     def items(self, layout: Layout) -> Iterable[Item]:
         """Yield the wall up to the height of what it carries."""
         bodies = tuple(dict.fromkeys(part.body for part in self.rounds))
@@ -172,12 +177,11 @@ class Road(Feature):
         """Build the wall; the base plate goes on beside it, under what it carries."""
         seat = plan.layout.sizes.pivot.fit.seat
         top = max(part.top(heights) for part in self.rounds)
-        holes = 0 if self.band is None else len(self.band.holes)
         road, material = self, "aluminium"
         if self.holds(plan.layout.m):
             road = self.reaching(plan.base_under, np.array(plan.layout.m.gravity))
             material = "concrete"
-        name = plan.make("ground", f"road_{self.name}", road._wall(seat, top), material, holes)
+        name = plan.make("ground", f"road_{self.name}", road.wall(seat, top), material, self.holes)
         plan.pressed_into("ground", name, self.rounds)
         if self.band is not None:
             (x0, y0), (x1, y1) = self.band.border.min(axis=0), self.band.border.max(axis=0)
@@ -209,7 +213,7 @@ class Road(Feature):
             ends.append((end + far / run * (end - inner))[None] if goes_on else self.path[:0])
         return along(self.name, self.rounds, np.vstack([ends[0], self.path, ends[1]]))
 
-    def _wall(self, low: float, high: float) -> cq.Workplane:
+    def wall(self, low: float, high: float) -> cq.Workplane:
         """Return the wall of flat facets as long as its bends allow: a spline's many short ones make the clearance
         proof slow.
         """

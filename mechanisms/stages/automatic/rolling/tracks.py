@@ -24,12 +24,11 @@ from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Reac
 from mechanisms.stages.automatic.layout.layout import Feature, Layout
 from mechanisms.stages.automatic.layout.plan import Foot, Plan
 from mechanisms.stages.automatic.layout.planar import Rounded, around, convex_hull, disc
-from mechanisms.stages.automatic.pins.pins import Pin
+from mechanisms.stages.automatic.pins.pins import pins_on
 from mechanisms.stages.automatic.rolling.roads import (
     CHORD,
     PIECES,
     THICK,
-    Band,
     Road,
     along,
     backed,
@@ -66,15 +65,13 @@ class Track(Feature):
     carried: Round
     path: np.ndarray
     """(n, 2) the surface; what is carried is on its left. Closed: its last place is its first."""
-    feet: np.ndarray | None = None
-    """(2, 2) of an open one: the other corners, behind the last place of the path and behind the first."""
-    band: Band | None = None
-    """Band of an open one: what lies behind the surface where that is no straight lower side."""
+    road: Road | None = None
+    """Surface of an open one with what lies behind it, as if on ground."""
 
     @property
     def inside(self) -> bool:
         """True if it lies round what it carries."""
-        return self.feet is None and turns_left(self.path)
+        return self.road is None and turns_left(self.path)
 
     @property
     def what(self) -> str:
@@ -85,11 +82,10 @@ class Track(Feature):
         """Return the plate below it."""
         if self.body == "ground":
             return []
-        if self.band is not None:
-            return [Anchor(self.body, float(x), float(y), EDGE) for x, y in _few(convex_hull(self.band.border))]
-        if self.feet is not None:
-            behind = self.feet[::-1]
-            ends = (self.path[[0, -1]] + behind) / 2
+        if self.road is not None and self.road.band is not None:
+            return [Anchor(self.body, float(x), float(y), EDGE) for x, y in _few(convex_hull(self.road.band.border))]
+        if self.road is not None:
+            ends = (self.path[[0, -1]] + self.road.feet[::-1]) / 2
             return [Anchor(self.body, float(x), float(y), THICK / 2 + EDGE) for x, y in ends]
         return [Anchor(self.body, float(x), float(y), THICK) for x, y in _few(convex_hull(self.path))]
 
@@ -111,8 +107,8 @@ class Track(Feature):
 
     def pieces(self) -> Iterable[Rounded]:
         """Yield the convex ones that cover it."""
-        if self.feet is not None:
-            for corners in Road(self.name, [self.carried], self.path, self.feet, self.band).pieces():
+        if self.road is not None:
+            for corners in self.road.pieces():
                 yield around([(float(x), float(y)) for x, y in corners], 0.2)
         elif not self.inside:
             yield Rounded(convex_hull(self.path), 0.2)
@@ -133,8 +129,8 @@ class Track(Feature):
         else:
             middle = heights.bottom(other) + heights.thickness / 2
             low, high = 2 * middle - self.carried.top(heights), heights.bottom(self.body) - seat
-        wall, holes = self._wall(low, high), len(self.band.holes) if self.band is not None else int(self.inside)
-        for x, y in [] if self.inside or self.feet is not None else self._pins(plan.layout):
+        wall, holes = self._wall(low, high), self.road.holes if self.road is not None else int(self.inside)
+        for x, y in [] if self.inside or self.road is not None else self._pins(plan.layout):
             wall = wall.cut(extruded(outline.circle(x, y, _hole(plan.layout)), high - low + 2, low - 1))
             holes += 1
         name = plan.make(self.body, f"track_{self.name}", wall, "aluminium", holes)
@@ -144,8 +140,7 @@ class Track(Feature):
         """Return places of pins that go through what lies within the curve. Raises UserError where one breaks its
         edge.
         """
-        pins = [pin for pin in layout.features if isinstance(pin, Pin) and self.body in pin.places]
-        pins = [pin for pin in pins if _holds(self.path, pin.places[self.body])]
+        pins = [pin for pin in pins_on(layout, self.body) if _holds(self.path, pin.places[self.body])]
         for pin in pins:
             near = float(distances(np.array([pin.places[self.body]]), self.path)[0])
             if near < _hole(layout) + EDGE:
@@ -159,11 +154,9 @@ class Track(Feature):
         return [pin.places[self.body] for pin in pins]
 
     def _wall(self, low: float, high: float) -> cq.Workplane:
-        if self.band is not None:
-            return self.band.wall(low, high)
+        if self.road is not None:
+            return self.road.wall(low, high)
         corners = simplified(self.path, CHORD)
-        if self.feet is not None:
-            return extruded(polygon(np.vstack([corners, self.feet])), high - low, low)
         surface = extruded(polygon(corners[:-1]), high - low, low)
         if not self.inside:
             return surface
@@ -180,8 +173,7 @@ def track(name: str, body: str, carried: Round, path: np.ndarray, closed: bool, 
     """
     if closed:
         return Track(name, body, carried, np.vstack([path, path[:1]]))
-    road = along(name, [carried], path) if road is None else road
-    return Track(name, body, carried, path, road.feet, road.band)
+    return Track(name, body, carried, path, along(name, [carried], path) if road is None else road)
 
 
 def circle(at: tuple[float, float], radius: float, inside: bool) -> np.ndarray:

@@ -344,12 +344,7 @@ def _known_planes(body: str, pins: list[Joint], sliding: Collection[str]) -> lis
 
 
 def _link(
-    m: Mechanism,
-    body: str,
-    own: list[Joint],
-    pins: list[Joint],
-    sliding: Collection[str],
-    chosen: Mapping[str, float],
+    m: Mechanism, body: str, own: list[Joint], pins: list[Joint], sliding: Collection[str], chosen: Mapping[str, float]
 ) -> Link:
     given = m.bodies[body].z
     slides = [joint.name for joint in own if joint.kind.name == "prismatic"]

@@ -55,21 +55,14 @@ class ShaftWheel:
 
 
 @dataclass(frozen=True, eq=False)
-class ShaftBelt:
-    """A belt (rmm) and the plane of its middle (mm)."""
-
-    belt: Belt
-    z: float
-
-
-@dataclass(frozen=True, eq=False)
 class Wheels:
     """All wheels and belts of a machine."""
 
     machine: Machine
     measures: Measures
     every: list[ShaftWheel] = field(default_factory=list)
-    belts: list[ShaftBelt] = field(default_factory=list)
+    belts: list[tuple[Belt, float]] = field(default_factory=list)
+    """Belts (rmm), each with the plane of its middle (mm)."""
 
     def wheels_on(self, body: str) -> list[ShaftWheel]:
         """Return the wheels of a shaft, each once."""
@@ -83,12 +76,12 @@ class Wheels:
             mates = frozenset(mate.body for mate in wheel.mates if hasattr(mate, "body"))
             shape = disc(wheel.x * unit, wheel.y * unit, own.outside)
             yield Takes(wheel.what, wheel.body, shape, own.mounted.low, own.mounted.high, mates)
-        for own in self.belts:
-            on = frozenset(pulley.body for pulley in own.belt.pulleys)
-            for item in own.belt.items(self.layout):
+        for belt, z in self.belts:
+            on = frozenset(pulley.body for pulley in belt.pulleys)
+            for item in belt.items(self.layout):
                 shape = Rounded(item.shape.core * unit, item.shape.radius * unit)
                 half = 2 * BELT * unit
-                yield Takes(item.what, item.body, shape, own.z - half, own.z + half, on)
+                yield Takes(item.what, item.body, shape, z - half, z + half, on)
 
     @cached_property
     def layout(self) -> Layout:
@@ -113,7 +106,7 @@ def wheels(machine: Machine, measures: Measures) -> Wheels:
         if joint.kind.name == BELTS:
             belt = belt_of(machine.m, joint, layout)
             in_plane += belt.pulleys
-            made.belts.append(ShaftBelt(belt, z))
+            made.belts.append((belt, z))
             continue
         sized = with_radii(joint.params)
         first, second = (

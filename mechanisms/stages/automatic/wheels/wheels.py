@@ -17,7 +17,7 @@ from mechanisms.stages.automatic.layout.layout import Carrier, Feature, Layout
 from mechanisms.stages.automatic.layout.plan import Foot, Plan, build
 from mechanisms.stages.automatic.layout.planar import Rounded, disc, least_gap
 from mechanisms.stages.automatic.pins.free_bodies import Face
-from mechanisms.stages.automatic.pins.pins import SAME, Pin
+from mechanisms.stages.automatic.pins.pins import pins_at
 from shared.shapes.build import extruded, turned
 from shared.shapes.involute import DEDENDUM, toothed, wire
 from shared.shapes.link import Eye
@@ -109,7 +109,8 @@ class Wheel(Feature):
         meshes = frozenset(mate.what for mate in self.mates)
         if not self.ring:
             on_tube = self.body != "ground" and not self.shares
-            meshes = meshes | self._pins(layout) if on_tube else meshes
+            if on_tube:  # it goes round the pins there
+                meshes |= {pin.what for pin in pins_at(layout, self.body, (self.x, self.y))}
             teeth = disc(self.x, self.y, self.tip)
             yield Item(self.what, self.body, teeth, reach, spares, self, meshes, spared=not on_tube)
             if self.body == "ground":
@@ -140,11 +141,6 @@ class Wheel(Feature):
         fills = any(getattr(feature, "fills", "") == body for feature in layout.features)
         in_ring = any(isinstance(mate, Wheel) and mate.ring for mate in self.mates)  # an arm would meet its teeth
         return None if fills else Face(self.x, self.y, self.root, math.inf if in_ring else max(self.tip, self.radius))
-
-    def _pins(self, layout: Layout) -> frozenset[str]:
-        """Return names of the pins that its tube goes round."""
-        pins = (pin for pin in layout.features if isinstance(pin, Pin) and self.body in pin.places)
-        return frozenset(pin.what for pin in pins if math.dist(pin.places[self.body], (self.x, self.y)) < SAME)
 
     def posts(self, layout: Layout) -> list[tuple[float, float]]:
         """Return posts under the rim of a ring fixed to ground: a cross turned so that the fewest bodies come near
@@ -201,9 +197,7 @@ def _on_ground(wheel: Wheel, plan: Plan, heights: Heights) -> None:
     shape, holes = shape_of(wheel, thickness, [])
     if not wheel.ring:
         pivot, here = plan.layout.sizes.pivot, (wheel.x, wheel.y)
-        grounded = [pin for pin in plan.layout.features if isinstance(pin, Pin) and pin.on_ground]
-        pinned = any(math.dist(pin.places["ground"], here) < SAME for pin in grounded)
-        bore = pivot.held if pinned else pivot.bushing + 1.0
+        bore = pivot.held if pins_at(plan.layout, "ground", here) else pivot.bushing + 1.0
         shape = shape.cut(extruded(circle(0, 0, bore / 2), thickness + 2, -1.0))
         post = extruded(circle(0, 0, wheel.root - 1.5), z - 2 * seat, seat, [circle(0, 0, bore / 2)])
         plan.make("ground", f"post_{wheel.name}", placed(post, wheel.x, wheel.y), "aluminium", 1)

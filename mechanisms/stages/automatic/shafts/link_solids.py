@@ -122,7 +122,7 @@ END = 0.1
 
 @dataclass(frozen=True)
 class Fork:
-    """Sizes of a carrier: its height, the thickness of each flange and of its shank, the bore it goes with."""
+    """Sizes of a carrier: height, thickness of each flange and of its shank, bore it goes with."""
 
     height: float
     flange: float
@@ -133,8 +133,9 @@ class Fork:
 def carrier_shape(
     main: Point, hole: float, small: tuple[float, float, Eye], pins: Sequence[Point], fork: Fork
 ) -> cq.Workplane:
-    """Return a carrier from z = 0 up: ``main`` on the crank pin with a ``hole`` (diameter), the ``small`` end, knuckle
-    ``pins``.
+    """Return a carrier from z = 0 up.
+
+    ``main`` is on the crank pin with a ``hole`` (diameter); ``small`` is its other end; ``pins`` are knuckle pins.
     """
     (x, y), bore, height = main, fork.bore, fork.height
     plate = _flange(main, pins, fork.flange, bore)
@@ -156,7 +157,7 @@ def knuckle_pin(at: Point, height: float, bore: float) -> cq.Workplane:
 
 
 def _flange(main: Point, pins: Sequence[Point], height: float, bore: float, edge: float = EDGE) -> cq.Workplane:
-    """Return the flange from z = 0 up: round the big end and all pins, drawn in between them where there is room."""
+    """Return the flange round the big end and all pins, drawn in between them where there is room."""
     x, y = main
     own, hub = KNUCKLE_EYE * bore, BIG_END * bore
     ring = extruded(outline.circle(x, y, hub), height)
@@ -254,9 +255,7 @@ def bearer_solids(own: Bearers, low: float, number: str) -> list[Solid]:
 
 
 def _across(own: Bearers) -> float:
-    """Return the direction (rad) square to a line through the axis that stays clear of the arms, with some on either
-    side.
-    """
+    """Return the direction (rad) square to a line through the axis with arms on either side, clear of it."""
     x, y = own.plan.shaft.at
     arms = [math.atan2(v - y, u - x) for u, v in own.places]
     best, clear = 0.0, -1.0

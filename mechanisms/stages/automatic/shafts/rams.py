@@ -130,7 +130,10 @@ class RamPlan:
 
 
 def ram_plans(machine: Machine, measures: Measures, thickness: Mapping[str, float]) -> dict[str, RamPlan]:
-    """Return ram plans by body. Raises UserError naming two links that leave no room for a cheek between them."""
+    """Return ram plans by body.
+
+    Raises UserError naming two links that leave no room for a cheek between them.
+    """
     plans = {}
     cheek = CHEEK * measures.sizes.thickness * measures.unit
     for name, own in machine.rams.items():

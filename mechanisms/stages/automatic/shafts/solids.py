@@ -100,8 +100,9 @@ def _named(made: dict[str, list[Solid]], tolerance: float | None) -> dict[str, l
 
 
 def plate_of(own: Along, mount: Mount, base_under: Sequence[tuple[float, float]] = ()) -> BackPlate:
-    """Return the base plate, below all that moves and round all that stands on it: a rectangle, or on a stand its
-    hull.
+    """Return the base plate, below all that moves and round all that stands on it.
+
+    It is a rectangle, or on a stand its hull.
     """
     unit, upright = own.measures.unit, Upright.from_mount(mount)
     places = np.array([upright.seen_place(x, y) for x, y in (*own.feet, *base_under)])
@@ -200,7 +201,10 @@ def _piston(own: Along, body: str, material: str) -> list[Solid]:
 
 
 def _link(own: Along, link: Link, material: str, is_wished: bool) -> list[Solid]:
-    """Return a rod where it has two eyes and drives a piston, else a plate; split at its crank pin where it can be."""
+    """Return a rod where it has two eyes and drives a piston, else a plate.
+
+    Split at its crank pin where it can be.
+    """
     thickness, bore = own.thickness[link.body], own.measures.of_rod(link)
     eyes, bottom, knuckle_pins = _eyes(own, link), link.z - thickness / 2, list[Solid]()
     cuts, main = _cuts(own, link, eyes), rod_foot(own.machine, link)

@@ -122,8 +122,9 @@ class ValvePlan:
 
 
 def valve_plans(machine: Machine, measures: Measures, cylinders: Mapping[str, Cylinder]) -> dict[str, ValvePlan]:
-    """Return valve plans by body. Raises UserError naming a valve that is over no cylinder, has no room in one, or
-    stands too low.
+    """Return valve plans by body.
+
+    Raises UserError naming a valve that is over no cylinder, has no room in one, or stands too low.
     """
     over = {name: _cylinder(machine, valve, cylinders) for name, valve in machine.valves.items()}
     plans = {}
@@ -170,8 +171,9 @@ def _cylinder(machine: Machine, valve: Valve, cylinders: Mapping[str, Cylinder])
 
 
 def _cam(machine: Machine, valve: Valve) -> tuple[np.ndarray, tuple[float, float], float]:
-    """Return the outline and centre in the frame of its shaft, least radius. Raises UserError for what cannot be
-    cut.
+    """Return the outline and centre in the frame of its shaft, least radius.
+
+    Raises UserError for what cannot be cut.
     """
     joint = machine.m.joints[valve.cam]
     marker = marker_on(joint, valve.shaft)
@@ -227,7 +229,7 @@ def along_x(shape: cq.Workplane) -> cq.Workplane:
 
 
 def valve_solids(own: ValvePlan) -> list[Solid]:
-    """Return a valve with its tappet in one piece, and the retainers of its springs, in the frame of its body."""
+    """Return a valve with its tappet, and its springs' retainers, in the frame of its body."""
     b, r, stem = own.bore, own.radius, STEM * own.bore
     c = 0.01 * b
     low, face = own.low, own.face
@@ -254,7 +256,10 @@ def _in_frame(own: ValvePlan, shape: cq.Workplane) -> cq.Workplane:
 
 
 def port_shape(own: ValvePlan, high: float) -> cq.Workplane:
-    """Return what a valve cuts out of a head whose upper face is at s = ``high``: recess, port and guide, about x."""
+    """Return what a valve cuts out of a head with its upper face at s = ``high``, about x.
+
+    That is recess, port and guide.
+    """
     b, start, gap = own.bore, own.cylinder.top - 1.0, own.running
     recess = own.low + CONE * b + gap
     throat = min(recess + 0.55 * HEAD * b, high - 0.02 * b)

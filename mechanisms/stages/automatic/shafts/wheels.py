@@ -93,7 +93,10 @@ class Wheels:
 
 
 def wheels(machine: Machine, measures: Measures) -> Wheels:
-    """Find them. Raises UserError naming a joint whose wheels are on no shaft, in no plane or in two, or apart."""
+    """Find them.
+
+    Raises UserError naming a joint whose wheels are on no shaft, in no plane or in two, or apart.
+    """
     made = Wheels(machine, measures)
     layout, thickness = made.layout, measures.sizes.thickness * measures.unit
     planes: list[tuple[float, list[Wheel]]] = []
@@ -123,7 +126,10 @@ def wheels(machine: Machine, measures: Measures) -> Wheels:
 
 
 def _joints(machine: Machine) -> list[Joint]:
-    """Return gears and belts. Raises UserError for a ring gear, and for a wheel whose centre is no shaft's axis."""
+    """Return gears and belts.
+
+    Raises UserError for a ring gear, and for a wheel whose centre is no shaft's axis.
+    """
     joints = []
     for joint in machine.m.joints.values():
         if joint.kind.name not in (GEARS, BELTS) or machine.left_out.intersection(joint.bodies):
@@ -175,8 +181,9 @@ SEAT = 0.02
 
 
 def wheel_solids(own: ShaftWheel, shaft: float, seat: float) -> list[Solid]:
-    """Return a wheel on a shaft of that radius, in the frame of its body; ``seat`` (rmm) is between a pulley and its
-    rim.
+    """Return a wheel on a shaft of that radius, in the frame of its body.
+
+    ``seat`` (rmm) is between a pulley and its rim.
     """
     wheel, unit = own.wheel, own.unit
     thickness, low = own.thickness / unit, own.mounted.low / unit

@@ -39,7 +39,7 @@ KERNEL = "the CAD kernel cannot make"
 
 @contextmanager
 def kernel_refusals(name: str, what: str) -> Iterator[None]:
-    """Raise UserError that names mechanism ``name`` and ``what`` where the CAD kernel fails, or a shape has no room."""
+    """Raise UserError naming mechanism and ``what`` where the CAD kernel fails or a shape has no room."""
     try:
         yield
     except Exception as error:
@@ -162,8 +162,10 @@ MOST_LETTERS = 3
 
 
 def base(plan: Plan, engraved_too: bool = True) -> list[Solid]:
-    """Return the plate, the ground's main piece, ``engraved_too`` unless nobody is to see it; screws and feet, or
-    spacers to a wall, where it is on no stand. Nothing where the ground itself is all that one needs.
+    """Return the plate, the ground's main piece, and what carries it.
+
+    It is engraved if ``engraved_too``. Screws and feet, or spacers to a wall, are there where it is on no stand.
+    Nothing where the ground itself is all that one needs.
     """
     back = back_plate(plan)
     if back is None:
@@ -199,7 +201,10 @@ def back_plate(plan: Plan) -> BackPlate | None:
 
 @dataclass(frozen=True)
 class _Screw:
-    """Screw of a corner (rmm), through the plate and its foot. ``room``: diameter and depth of its counterbore."""
+    """Screw of a corner (rmm), through the plate and its foot.
+
+    ``room``: diameter and depth of its counterbore.
+    """
 
     shape: cq.Workplane
     diameter: float
@@ -222,7 +227,10 @@ def _corner_screw(sizes: Sizes) -> _Screw:
 
 
 def _extent(plan: Plan, upright: Upright) -> tuple[float, float, float, float]:
-    """Return the extent of the plate: round all feet; without any, under what moves; and as far as one wishes."""
+    """Return the extent of the plate: round all feet, or without any under what moves.
+
+    It reaches as far as one wishes.
+    """
     if plan.feet:
         places = np.array([[stand.x, stand.y] for stand in plan.feet])
     else:
@@ -339,7 +347,7 @@ def _plate(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
 
 
 def _geared(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
-    """Return the plate of a body with teeth: a wheel that carries its eyes, or a wheel and a plate round its eyes."""
+    """Return a toothed plate: a wheel that carries its eyes, or a wheel and a plate round its eyes."""
     eyes, own_wheel = plan.eyes.get(body, []), plan.wheels[body]
     wheel, holes = shape_of(own_wheel, thickness, [(x - own_wheel.x, y - own_wheel.y, eye) for x, y, eye in eyes])
     wheel = placed(wheel, own_wheel.x, own_wheel.y)

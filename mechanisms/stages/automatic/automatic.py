@@ -57,7 +57,7 @@ from shared.stage.errors import UserError, did_you_mean
 
 
 def refuse_unknown(m: Mechanism, body: str, left_out: Collection[str], ground: bool = False) -> None:
-    """Raise UserError unless ``body`` is one that moves, a rod (or ground, where that may be) and is not left out."""
+    """Raise UserError unless ``body`` moves, is a rod, or where that may be ground, and is not left out."""
     if body in left_out:
         raise UserError(f"{m.name}: '{body}' is left out, so there is nothing of it to shape")
     names = [*(name for name in m.bodies if ground or name != "ground"), *rods_of(m)]
@@ -133,7 +133,9 @@ class Automatic:
     def join(
         self, body: str, outline: cq.Wire, at: Point = (0.0, 0.0), holes: Sequence[cq.Wire] = (), sharp: bool = False
     ) -> None:
-        """Make a closed outline (mm, the body's frame, z = 0) a part of its plate; others keep clear of its hull.
+        """Make a closed outline (mm, the body's frame, z = 0) a part of its plate.
+
+        Others keep clear of its hull.
 
         ``at`` is the place of the joint whose eye it carries; joints that no outline carries are linked as usual.
         ``sharp`` leaves its edges as they are.
@@ -144,7 +146,7 @@ class Automatic:
         self._plan_anew()
 
     def engrave(self, body: str, word: str, at: tuple[float, float], height: float | None = None) -> None:
-        """Engrave ``word`` into the upper face of a plate, its middle ``at`` (x, y) in the frame of ``body`` (mm).
+        """Engrave ``word`` into a plate's upper face, its middle ``at`` (x, y) in the frame of ``body`` (mm).
 
         ``height`` of the letters (mm); by default they go with the eyes. Raises UserError for letters that there are
         not, and when it is built where the word is not all on the plate.
@@ -157,7 +159,7 @@ class Automatic:
         self._marks.append((body, Mark(word, *at, height or 0.0)))
 
     def base_under(self, *places: Point) -> None:
-        """Let the base plate and roads on it reach places (x, y) of ground (mm), besides all that stands on it.
+        """Let the base plate and roads on it reach places (x, y) of ground (mm) besides what stands on it.
 
         Raises UserError for a place that is not finite.
         """
@@ -229,8 +231,9 @@ class Automatic:
 
     @cached_property
     def layout(self) -> Layout:
-        """Return what is to be built, with styluses as tall as the layers allow. Raises UserError if no layers are
-        possible.
+        """Return what is to be built, with styluses as tall as the layers allow.
+
+        Raises UserError if no layers are possible.
         """
         return self._decided[0]
 
@@ -258,9 +261,10 @@ class Automatic:
         return heights_of
 
     def solids(self, engraved_too: bool = True) -> Bodies:
-        """Return every piece by the body it moves with, in mm; the first of each list is the body's main piece.
-        ``on_stand()`` adds a stand. ``engraved_too``: the base with its names, rule and dial, which cost as much as a
-        link.
+        """Return every piece by the body it moves with, in mm.
+
+        The first of each list is the body's main piece. ``on_stand()`` adds a stand. ``engraved_too``: the base with
+        its names, rule and dial, which cost as much as a link.
         """
         if self.along is not None:
             return self._solids_along(self.along)
@@ -366,8 +370,9 @@ class Automatic:
 def automatic(
     m: Mechanism, pin: float | None = None, solution: Solution | None = None, fit: Fit | None = None
 ) -> Automatic:
-    """Return parts of ``m``, planned from ``solution``; by default from the motion of the mechanism's folder, or of its
-    variant that is made.
+    """Return parts of ``m``, planned from ``solution``.
+
+    By default that is the motion of the mechanism's folder, or of its variant that is made.
 
     ``pin``: diameter (mm) of its pins; by default it follows from the links. ``fit``: clearances (mm), such as
     ``Fit(running=0.3)`` for printed parts; by default they follow from the pins. Raises UserError where it cannot move.

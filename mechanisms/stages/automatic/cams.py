@@ -147,8 +147,9 @@ def _cam(m: Mechanism, joint: Joint, layout: Layout) -> Cam:
 
 
 def cut_outline(m: Mechanism, joint: Joint, marker: Marker, metre: float) -> np.ndarray:
-    """Return (n, 2) the outline of a joint's cam about its centre, in the axes of the body of ``marker``, with a
-    ``metre`` as the unit. Raises UserError for a cam that cannot be cut.
+    """Return (n, 2) the outline of a joint's cam about its centre, a ``metre`` as the unit.
+
+    It is in the axes of the body of ``marker``. Raises UserError for a cam that cannot be cut.
     """
     profile = _profile(joint)
     if profile.undercut:
@@ -157,7 +158,9 @@ def cut_outline(m: Mechanism, joint: Joint, marker: Marker, metre: float) -> np.
 
 
 def pushing_cam(touch: Joint, layout: Layout) -> list[Feature]:
-    """Return the cam of a contact whose closed curve pushes a disc that may leave it; none if the disc runs inside.
+    """Return the cam of a contact whose closed curve pushes a disc that may leave it.
+
+    Returns an empty list if the disc runs inside.
 
     A point is the bare end of a pin, and the cam is smaller by that pin's radius. Raises UserError where nothing of
     the cam would be left.
@@ -303,8 +306,10 @@ class GenevaDrive(Feature):
         return [*axes, Anchor(self.crank, *self.pin.pin_at, eye)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """Yield the wheel, the pin through it, the locking disc; and a rule: the crank, whose disc stands in the
-        wheel's layer, is in another one even where its arm never comes near the wheel.
+        """Yield the wheel, the pin through it and the locking disc, and a rule.
+
+        The rule: the crank, whose disc stands in the wheel's layer, is in another one even where its arm never comes
+        near the wheel.
         """
         both, between = frozenset((self.crank, self.wheel)), Reach((self.crank, self.wheel))
         wheel, lock = disc(*self.wheel_at[:2], self.shape.rim), disc(*self.crank_at[:2], self.shape.lock)

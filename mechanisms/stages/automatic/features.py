@@ -1,4 +1,4 @@
-"""The features of a mechanism, from its joints, forces, contacts and drivers, and the layout that holds them."""
+"""The features of a mechanism, from its joints, forces, contacts and drivers, and its layout."""
 
 from __future__ import annotations
 
@@ -53,8 +53,9 @@ class LooseEye(Feature):
 
 
 def gathered(layout: Layout) -> list[Feature]:
-    """Return all features of joints, forces, contacts and drivers. Raises UserError for a kind of joint that has no
-    parts.
+    """Return all features of joints, forces, contacts and drivers.
+
+    Raises UserError for a kind of joint that has no parts.
     """
     m = layout.m
     by_kind: dict[str, list[Joint]] = {}
@@ -97,7 +98,10 @@ def _gather_kinds(
 
 
 def _loose_eyes(joints: list[Joint], features: list[Feature], layout: Layout) -> list[Feature]:
-    """Return one for each moving body and place of a joint whose other body is left out, unless something is there."""
+    """Return an eye for each place of a joint on a moving body whose other body is left out.
+
+    None where something is there already.
+    """
     taken = [anchor for feature in features for anchor in feature.anchors(layout)]
     eyes: list[LooseEye] = []
     for joint in joints:

@@ -1,4 +1,4 @@
-"""Items that take room: a shape in the plane that moves with a body, and the heights that it reaches through."""
+"""Items that take room: a shape in the plane that moves with a body, and the heights it reaches."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Reach:
 
 @dataclass(frozen=True)
 class PinReach:
-    """A pin between the plates of ``bodies``, with an end above the highest (``choice`` 0) or under the lowest (1)."""
+    """A pin between the plates of ``bodies``: its end is above them (``choice`` 0) or below (1)."""
 
     bodies: tuple[str, ...]
     choice: str
@@ -97,7 +97,10 @@ type AnyReach = Reach | PinReach | PivotReach
 
 @dataclass(frozen=True, eq=False)
 class Item:
-    """One thing that takes room. ``what`` names it in messages; bodies in ``spares`` may pass through it by design."""
+    """One thing that takes room. ``what`` names it in messages.
+
+    Bodies in ``spares`` may pass through it by design.
+    """
 
     what: str
     body: str
@@ -122,7 +125,9 @@ def spans_meet(a: tuple[int, int] | None, b: tuple[int, int] | None) -> bool:
 
 
 def span(reach: AnyReach, levels: Levels) -> tuple[int, int] | None:
-    """Return the lowest and highest half layer, as far as layers are decided: more decided ones only make it longer.
+    """Return the lowest and highest half layer, as far as layers are decided.
+
+    More decided layers only make it longer.
 
     While a choice is open: what both have in common.
     """

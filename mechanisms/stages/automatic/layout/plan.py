@@ -1,4 +1,4 @@
-"""The plan of the parts: what kinds of joints, forces and contacts put on bodies, with eyes, feet and solids."""
+"""The plan of the parts: the eyes, feet and solids that kinds of joints, forces and contacts add."""
 
 from __future__ import annotations
 
@@ -34,7 +34,10 @@ kind, force_kind, contact_kind, driver_kind = KINDS.enter, FORCE_KINDS.enter, CO
 
 @singledispatch
 def build(feature: Any, plan: Plan, heights: Heights) -> None:
-    """Give eyes to the bodies and solids to the plan: as a file of solids has registered, else the feature itself."""
+    """Give eyes to the bodies and solids to the plan.
+
+    A file of solids has registered how, else the feature itself says so.
+    """
     feature.build(plan, heights)
 
 
@@ -119,7 +122,10 @@ class Plan:
         self.eyes.setdefault(body, []).append((x, y, eye))
 
     def plate(self, body: str, shape: cq.Workplane, holds: Circle, through_holes: int = 0) -> None:
-        """Join ``shape`` (z = 0 is the underside) to a body's plate; eyes within the circle ``holds`` need no link."""
+        """Join ``shape`` (z = 0 is the underside) to a body's plate.
+
+        Eyes within the circle ``holds`` need no link.
+        """
         self.plates.setdefault(body, []).append(Plate(shape, holds, through_holes))
 
     def cut(self, body: str, tool: cq.Workplane, through_holes: int) -> None:
@@ -152,8 +158,9 @@ class Plan:
 
 
 def free_name(wish: str, taken: set[str]) -> str:
-    """Return a name of letters, digits and _ that is not ``taken``, and enter it there in lower case: some disks take
-    upper and lower case for one.
+    """Return a name of letters, digits and _ that is not ``taken``, and enter it there.
+
+    It is entered in lower case: some disks take upper and lower case for one.
     """
     name = re.sub(r"\W", "_", wish, flags=re.ASCII)
     name = name if name[:1].isalpha() else f"part_{name}"

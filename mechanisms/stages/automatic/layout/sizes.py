@@ -1,4 +1,4 @@
-"""The size of parts: how far joints reach, lengths that must hold a pin, and the scale that follows (mm)."""
+"""The size of parts: how far joints reach, lengths that must hold a pin, and the scale (mm)."""
 
 from __future__ import annotations
 
@@ -165,8 +165,9 @@ def distance(joint: Joint, solution: Solution) -> float:
 
 
 def rods_of(m: Mechanism, left_out: Collection[str] = ()) -> dict[str, Joint]:
-    """Return rods by name, which is that of the joint, but for joints whose name a body has; without those that lack an
-    end.
+    """Return rods by name, which is that of the joint unless a body has it.
+
+    Rods that lack an end are left out.
     """
     rods: dict[str, Joint] = {}
     for name, joint in m.joints.items():
@@ -261,24 +262,28 @@ class Sizes:
 
     @property
     def tolerance(self) -> float | None:
-        """Largest distance (mm of the finished piece) of meshes from the true surface: in proportion where parts are
-        large, well below the clearance of pins; None: the usual one.
+        """Largest distance (mm of the finished piece) of meshes from the true surface; None: the usual.
+
+        It is in proportion where parts are large, and well below the clearance of pins.
         """
         large = min(self.finished, COARSEST * self.pivot.fit.running * self.finished / TOLERANCE)
         return TOLERANCE * large if large > 1.0 else None
 
     @property
     def screw(self) -> float:
-        """Nominal diameter (mm of the finished piece) of the screws of a pedestal: the standard one next to 3 rmm; 0
-        where all are too thick.
+        """Nominal diameter (mm of the finished piece) of a pedestal's screws; 0 where all are too thick.
+
+        It is the standard one next to 3 rmm.
         """
         nearest = min(SOCKET, key=lambda size: abs(size - 3.0 * self.finished))
         return nearest if nearest <= THICKEST_SCREW * self.finished else 0.0
 
 
 def sizes(shortest: float, overall: float, fit: Fit | None = None, thinnest: float = THINNEST) -> list[Sizes]:
-    """Return sizes from the shortest distance of two joints of one body and the longer side of what all joints sweep
-    (m); then with thinner pins, the last ``thinnest`` times as thick at least.
+    """Return sizes, the most wanted first, then with thinner pins.
+
+    They follow from the shortest distance of two joints of one body and the longer side of what all joints sweep (m).
+    The last pins are ``thinnest`` times as thick at least.
     """
     pin = standard(min(mm(shortest) / LEAST_LINK, mm(overall) / OVERALL))
     thinner = [d for d in reversed(STANDARD) if thinnest * pin <= d < pin]
@@ -286,7 +291,10 @@ def sizes(shortest: float, overall: float, fit: Fit | None = None, thinnest: flo
 
 
 def thin_pins(lengths: Lengths, pin: float) -> str:
-    """Return why pins of ``pin`` mm are much thinner than usual in a machine of this size; empty where they are not."""
+    """Return why pins of ``pin`` mm are much thinner than usual in a machine of this size.
+
+    Empty where they are not.
+    """
     shortest, words, own = lengths.shortest
     usual = standard(mm(lengths.overall) / OVERALL)
     if standard(mm(shortest) / LEAST_LINK) * MUCH_THINNER > usual:
@@ -298,8 +306,9 @@ def thin_pins(lengths: Lengths, pin: float) -> str:
 
 
 def of_pin(diameter: float, fit: Fit | None = None, ratio: float = 1.0) -> Sizes:
-    """Return sizes that go with pins of this diameter (mm), with washers and circlips that one can buy where there are
-    any.
+    """Return sizes that go with pins of this diameter (mm).
+
+    Washers and circlips are those that one can buy where there are any.
 
     ``fit`` in mm; by default what a workshop can make, small or large. Both are those of the finished piece, in the
     ``ratio`` to the machine.
@@ -379,8 +388,9 @@ def printed_fit(pin: float) -> Fit:
 
 
 def fit_at_scale(pin: float) -> Fit:
-    """Return the clearances for a parts.py with pins of this diameter: ``Fit()``, or in a model at a scale what its
-    printer needs. All in mm of the machine.
+    """Return the clearances for a parts.py with pins of this diameter, in mm of the machine.
+
+    They are ``Fit()``, or in a model at a scale what its printer needs.
     """
     scale = wished_scale()
     if scale is None:

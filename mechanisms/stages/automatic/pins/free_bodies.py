@@ -45,8 +45,9 @@ SEEN = 0.05
 
 
 class Face(NamedTuple):
-    """Face of a wheel, in its body's frame (rmm): what lies within ``inner`` is solid and touches nothing; beyond
-    ``outer`` the body may have an arm.
+    """Face of a wheel in its body's frame (rmm): within ``inner`` it is solid and touches nothing.
+
+    Beyond ``outer`` the body may have an arm.
     """
 
     x: float
@@ -121,9 +122,7 @@ class RimMark(Feature):
 
 
 def face_at(body: str, x: float, y: float, layout: Layout) -> Face | None:
-    """Return the face of the wheel on whose rim, or beyond whose working surface, an eye at a place of a body would
-    be.
-    """
+    """Return the face of the wheel whose rim or working surface an eye at a place would break."""
     eye = layout.sizes.stylus_eye
     for feature in layout.features:
         face_of = getattr(feature, "face_of", None)
@@ -341,7 +340,8 @@ class Weight(Feature):
 
 
 def styluses(layout: Layout, tall: bool, pointers: bool) -> list[Feature]:
-    """Return one for every traced point of a moving body, except where a joint's eye or a weight is, and on balls.
+    """Return a stylus for every traced point of a moving body, except on balls, eyes and weights.
+
     Points on rims get marks there, with ``pointers`` where these are wanted.
     """
     features: list[Feature] = []
@@ -366,8 +366,9 @@ def styluses(layout: Layout, tall: bool, pointers: bool) -> list[Feature]:
 
 
 def weights(layout: Layout, heavy: bool) -> list[Feature]:
-    """Return weights for bars with a free end, and for bodies with one joint, but no wheels or tyres, whose centre of
-    mass is elsewhere.
+    """Return weights for bars with a free end, and for bodies with one joint and their mass elsewhere.
+
+    Wheels and tyres get none.
 
     ``heavy``: only for ends of bars where their centre of mass is, even if they are traced.
     """

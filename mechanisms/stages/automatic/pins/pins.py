@@ -157,7 +157,7 @@ class Pin(Feature):
         return [Item(self.what, self.home, shape, ends, on_it, self)]
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Yield the room for washers and flanges between neighbours on the pin, and for its head or circlip on top."""
+        """Yield the room for washers and flanges between neighbours, and for head or circlip on top."""
         sizes, pivot = layout.sizes, layout.sizes.pivot
         running = pivot.fit.axial + pivot.flange_room
         stack = sorted(levels[body] for body in self.movers)
@@ -248,7 +248,10 @@ THINNEST = 0.4
 
 @force_kind("clearance_joint")
 def gather_with_play(m: Mechanism, forces: list[Force], layout: Layout) -> list[Feature]:
-    """Return a pin each. Raises UserError where play leaves no bushing, or where another pin has the place."""
+    """Return a pin each.
+
+    Raises UserError where play leaves no bushing, or where another pin has the place.
+    """
     pins: list[Feature] = []
     for force in forces:
         places = {marker.body.name: layout.place(marker) for marker in (force.i, force.j)}
@@ -292,8 +295,9 @@ def _refuse_shared(m: Mechanism, force: Force, places: dict[str, tuple[float, fl
 
 
 def webbed(layout: Layout, bodies: Collection[str]) -> Iterable[Layout]:
-    """Yield layouts in which one of ``bodies`` has a further web: each of its pins once as the one that joins both, and
-    the others shared out in every way.
+    """Yield layouts in which one of ``bodies`` has a further web.
+
+    Each of its pins is once the one that joins both, and the others are shared out in every way.
     """
     for body in (body for body in bodies if body in layout.bodies):
         pins = sorted(pins_on(layout, body), key=lambda pin: not pin.on_ground)

@@ -39,7 +39,7 @@ HOOK = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Stretching(Feature):
-    """One spring, damper or actuator: its ends (body, x, y in its frame) and their ways in the world, in rmm."""
+    """One spring, damper or actuator: its ends (body, x, y) and their ways in the world (rmm)."""
 
     force: str
     radius: float
@@ -165,8 +165,9 @@ class Stud(Feature):
             yield Item(f"{self.what} from below", self.body, disc(self.x, self.y, EYE), under, spares, self, only=held)
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Yield the room for its collar between its plate and a ball in the next layer; springs and pins ask for the
-        rest.
+        """Yield the room for its collar between its plate and a ball in the next layer.
+
+        Springs and pins ask for the rest.
         """
         if self.pin is not None or self.body == "ground":
             return
@@ -200,8 +201,9 @@ LEAST = 4.0
 
 
 def _sags(path: np.ndarray, length: float, down: tuple[float, float]) -> np.ndarray:
-    """Return (T, 2) twice the sag of a rope of this length (rmm) along ``down``, or more: its parabola is longer than
-    the two straight lines to its vertex, which are as long as the rope here.
+    """Return (T, 2) twice the sag of a rope of this length (rmm) along ``down``, or more.
+
+    Its parabola is longer than the two straight lines to its vertex, which are as long as the rope here.
     """
     strength = float(np.hypot(*down))
     if strength == 0:
@@ -262,7 +264,7 @@ def _is_coil(force: Force | Joint) -> bool:
 @contact_kind(ROPE)
 @driver_kind(LINEAR)
 def gather(m: Mechanism, things: Sequence[Force | Joint], layout: Layout) -> list[Feature]:
-    """Return studs first, then the springs, ropes and drivers that share them, of all kinds at the first one."""
+    """Return studs, then the springs, ropes and drivers that share them, at the first of these kinds."""
     between = stretching(m, layout.apart)
     if things[0] is not between[0]:
         return []

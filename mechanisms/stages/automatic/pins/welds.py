@@ -1,4 +1,4 @@
-"""Welds: two plates, one above the other, on a spacer with two bolts; on ground a block carries the plate.
+"""Welds: two plates on a spacer with two bolts; on ground a block carries the plate.
 
 The bolts are at the weld's place, along its direction. Where pins, slots or other bolts of its bodies are in their way
 they stand across, or farther away: what is welded is one rigid thing, wherever its bolts are.
@@ -117,8 +117,7 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
 
 
 def with_free_bolts(features: Sequence[Feature], layout: Layout) -> list[Feature]:
-    """Return the features, with the bolts of each weld at the nearest place where nothing of its bodies is in their
-    way.
+    """Return the features, with the bolts of each weld at the nearest place that is free on both bodies.
 
     Raises UserError for a weld without such a place.
     """

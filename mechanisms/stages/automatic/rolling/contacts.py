@@ -45,7 +45,7 @@ difference."""
 
 @dataclass(eq=False)
 class Line:
-    """A line on ground (rmm): a place, its direction, and the round parts that it carries with their ways along it."""
+    """A line on ground (rmm): a place, its direction, the round parts on it and their ways along it."""
 
     name: str
     start: np.ndarray
@@ -94,7 +94,10 @@ def roads(lines: Sequence[Line]) -> list[Road]:
 
 
 def _mitre(line: Line, other: Line) -> np.ndarray:
-    """Return (2,) from where two walls meet to where their outer faces meet; square where that would be far."""
+    """Return (2,) from where two walls meet to where their outer faces meet.
+
+    Square where that would be far.
+    """
     cosine = float(line.free @ other.free)
     if math.pi - math.acos(max(-1.0, min(1.0, cosine))) < SHARPEST:
         return -THICK * line.free
@@ -151,7 +154,10 @@ def terrains(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature
 
 @contact_kind("rigid_discs")
 def discs(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature]:
-    """Return two balls or discs of moving bodies, on one layer; rings round discs, and discs on ground, are tracks."""
+    """Return two balls or discs of moving bodies, on one layer.
+
+    Rings round discs, and discs on ground, are tracks.
+    """
     features: list[Feature] = []
     for touch in touches:
         if touch.params["inside"] or "ground" in touch.bodies:
@@ -222,8 +228,9 @@ def _in_ring(m: Mechanism, touch: Joint, layout: Layout) -> list[Feature]:
 def _on_road(
     m: Mechanism, touch: Touch, path: np.ndarray | None, layout: Layout, closed: bool = False
 ) -> list[Feature]:
-    """Return a road on ground, or a track of another body or along a closed curve; without a ``path`` (n, 2) (rmm, the
-    frame of its body) it is along the contact's open curve.
+    """Return a road on ground, or a track of another body or along a closed curve.
+
+    Without a ``path`` (n, 2) (rmm, the frame of its body) it is along the contact's open curve.
     """
     places, radius = _places(touch, layout), layout.sizes.of_metres(touch.params["radius"])
     if path is None:
@@ -280,12 +287,12 @@ def _feet(m: Mechanism, body: str) -> int:
 
 
 def _set_back(touch: Touch, layout: Layout) -> float:
-    """Return how far the surface lies behind that of the model (rmm), because what touches is larger than there."""
+    """Return how far the surface lies behind the model's (rmm), as what touches is larger than there."""
     return max(0.0, _least_radius(touch, layout) - layout.sizes.of_metres(touch.params["radius"]))
 
 
 def _least_radius(touch: Touch, layout: Layout) -> float:
-    """Return the least radius of what touches (rmm): that of a nose, or one that holds the eye of a pin there."""
+    """Return the least radius of what touches (rmm): a nose's, or one that holds the eye of a pin."""
     sizes, is_pinned = layout.sizes, bool(pins_at(layout, touch.j.body.name, layout.place(touch.j)))
     return sizes.eye + CLEAR * sizes.pivot.fit.running + YIELDS if is_pinned else NOSE
 

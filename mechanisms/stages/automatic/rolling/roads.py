@@ -1,4 +1,4 @@
-"""Roads: strips along lines and curves, the backings that hold them, and roads that several bodies share."""
+"""Roads: strips along lines and curves, what backs them, and roads that several bodies share."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ SAME_AREA = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """Matter of even thickness on the right of a surface (rmm): its borders, and convex pieces that cover it."""
+    """Matter of even thickness on the right of a surface (rmm): borders, and convex pieces of it."""
 
     border: np.ndarray
     """(n, 2) counter-clockwise."""
@@ -52,15 +52,16 @@ class Band:
 
 
 def straight_back(path: np.ndarray, thick: float = THICK) -> np.ndarray:
-    """Return (2, 2) corners of a straight lower side, behind the last place of a surface and behind the first."""
+    """Return (2, 2) corners of a straight lower side, behind a surface's last place and its first."""
     under = behind(path[-1] - path[0])
     lowest = float((path @ under).max()) + thick
     return np.array([path[k] + (lowest - path[k] @ under) * under for k in (-1, 0)])
 
 
 def is_simple(path: np.ndarray, feet: np.ndarray) -> bool:
-    """Return True if the polygon of a surface and its lower corners crosses itself nowhere: then its signed area is
-    that of what it goes round.
+    """Return True if the polygon of a surface and its lower corners crosses itself nowhere.
+
+    Then its signed area is that of what it goes round.
     """
     corners = np.vstack([simplified(path, CHORD), feet])
     signed = abs(area(corners)) / 2
@@ -68,17 +69,16 @@ def is_simple(path: np.ndarray, feet: np.ndarray) -> bool:
 
 
 def is_free(path: np.ndarray, feet: np.ndarray, centres: np.ndarray, radius: float) -> bool:
-    """Return True if the polygon of a surface and its lower corners crosses itself nowhere, and what runs on the
-    surface, a disc about ``centres`` (T, 2), is clear of its other sides.
+    """Return True if a surface with its lower corners crosses neither itself nor what runs on it.
+
+    What runs there is a disc about ``centres`` (T, 2), which must be clear of the other sides.
     """
     others = np.vstack([path[-1:], feet, path[:1]])
     return is_simple(path, feet) and bool(distances(centres, others).min() >= radius)
 
 
 def is_clear(backing: Band, path: np.ndarray, centres: np.ndarray, radius: float) -> bool:
-    """Return True if a disc about ``centres`` (T, 2) that runs on a surface is clear of the other sides of the band
-    there.
-    """
+    """Return True if a disc about ``centres`` (T, 2) on a surface is clear of the band's other sides."""
     return bool(distances(centres, np.vstack([path[-1:], backing.back[::-1], path[:1]])).min() >= radius)
 
 
@@ -104,7 +104,7 @@ def polygon(corners: np.ndarray) -> cq.Wire:
 
 
 def _mitres(path: np.ndarray) -> np.ndarray:
-    """Return (n, 2) from a polyline's places to those at a unit distance on its left, at corners as far as LONGEST."""
+    """Return (n, 2) from a polyline's places to those a unit to its left, at corners up to LONGEST."""
     way = np.diff(path, axis=0)
     way /= np.hypot(*way.T)[:, None]
     left = np.column_stack([-way[:, 1], way[:, 0]])
@@ -199,8 +199,9 @@ class Road(Feature):
         return bool(down) and any(part.look == "wheel" for part in self.rounds)
 
     def reaching(self, places: Sequence[tuple[float, float]], pull: np.ndarray) -> Road:
-        """Return the road with as much of its straight continuations as lies over or under ``places`` (rmm), ``pull``
-        (2,) pointing down.
+        """Return the road with its straight continuations as far as ``places`` (rmm) ask.
+
+        ``pull`` (2,) points down: what lies over or under a place reaches it.
         """
         if not self.is_square or not len(places):
             return self
@@ -214,8 +215,9 @@ class Road(Feature):
         return along(self.name, self.rounds, np.vstack([ends[0], self.path, ends[1]]))
 
     def wall(self, low: float, high: float) -> cq.Workplane:
-        """Return the wall of flat facets as long as its bends allow: a spline's many short ones make the clearance
-        proof slow.
+        """Return the wall, of flat facets as long as its bends allow.
+
+        A spline's many short ones make the clearance proof slow.
         """
         if self.band is not None:
             return self.band.wall(low, high)
@@ -228,8 +230,9 @@ def along(name: str, rounds: Sequence[Round], path: np.ndarray, thick: float = T
 
 
 def backed(name: str, part: Round, path: np.ndarray, centres: np.ndarray, radius: float) -> Road | None:
-    """Return a road that a disc about ``centres`` (T, 2) runs on without meeting its other sides: with a straight lower
-    side if it can have one, else a band; None if neither can be.
+    """Return a road that a disc about ``centres`` (T, 2) runs on without meeting its other sides.
+
+    It has a straight lower side if it can have one, else it is a band; None if neither can be.
     """
     road = along(name, [part], path)
     if is_free(path, road.feet, centres, radius):
@@ -290,8 +293,9 @@ def _both(first: Road, second: Road) -> Road | None:
 
 
 def _common(first: np.ndarray, second: np.ndarray) -> np.ndarray | None:
-    """Return (n, 2) one path along both; None where they part, or where there is a gap between two that are not
-    straight.
+    """Return (n, 2) one path along both.
+
+    None where they part, or where there is a gap between two that are not straight.
     """
     way = (first[-1] - first[0]) / np.hypot(*(first[-1] - first[0]))
     at, other = (first @ way, second @ way)

@@ -78,7 +78,7 @@ class Round(Feature):
         return Face(*self.at, self.rim(layout) - 0.5 if self.look == "wheel" else self.built_radius - 0.5)
 
     def tyre(self, layout: Layout) -> float:
-        """Return how thick the tyre of a wheel is (rmm): thicker where it is pressed in, as far as that is possible."""
+        """Return how thick a wheel's tyre is (rmm): thicker where it is pressed in, as far as it can be."""
         running = layout.sizes.pivot.fit.running
         return max(
             min(TYRE * self.built_radius, 5.0), min(self.pressed + running, self.built_radius - self.hub(layout) - RIM)
@@ -128,7 +128,9 @@ class Round(Feature):
 def round_at(
     layout: Layout, name: str, body: str, at: tuple[float, float], radius: float, look: Look, pressed: float = 0.0
 ) -> tuple[Round, bool]:
-    """Return the round part at a place of a body, and whether it is a new one; ``radius`` and ``pressed`` in rmm.
+    """Return the round part at a place of a body, and whether it is a new one.
+
+    ``radius`` and ``pressed`` in rmm.
 
     Where there is one already, it becomes as small as all that it touches ask for, and a wheel if one of them does.
     """

@@ -90,8 +90,9 @@ class Track(Feature):
         return [Anchor(self.body, float(x), float(y), THICK) for x, y in _few(convex_hull(self.path))]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """Yield the convex pieces, from the base or the plate to the height of what it carries; and a rule: that is in
-        another layer than the plate, even where they never meet.
+        """Yield the convex pieces up to the height of what it carries, and a rule.
+
+        The rule: what it carries is in another layer than the plate, even where they never meet.
         """
         other, ball = self.carried.body, int(self.carried.look == "ball")
         if self.body == "ground":
@@ -137,8 +138,9 @@ class Track(Feature):
         plan.pressed_into(self.body, name, [self.carried])
 
     def _pins(self, layout: Layout) -> list[tuple[float, float]]:
-        """Return places of pins that go through what lies within the curve. Raises UserError where one breaks its
-        edge.
+        """Return places of pins that go through what lies within the curve.
+
+        Raises UserError where one breaks its edge.
         """
         pins = [pin for pin in pins_on(layout, self.body) if _holds(self.path, pin.places[self.body])]
         for pin in pins:
@@ -166,8 +168,9 @@ class Track(Feature):
 
 
 def track(name: str, body: str, carried: Round, path: np.ndarray, closed: bool, road: Road | None = None) -> Track:
-    """Return a track on a path (n, 2) (rmm, the body's frame) with what it carries on its left; a closed one is closed
-    here.
+    """Return a track on a path (n, 2) (rmm, the body's frame) with what it carries on its left.
+
+    A closed one is closed here.
 
     An open one has behind it what a ``road`` on the same path has, by default a straight lower side.
     """
@@ -236,7 +239,10 @@ LEAST = 1e-6
 
 
 def rolled_road(joint: Joint, part: Round, layout: Layout) -> Road:
-    """Return the road of a disc that rolls on an open curve. Raises UserError where each would be in the disc's way."""
+    """Return the road of a disc that rolls on an open curve.
+
+    Raises UserError where each would be in the disc's way.
+    """
     path = on_body(curve_path(joint.params["points"], False), joint.i, layout)
     centres = layout.seen(joint.j.body.name, layout.place(joint.j), joint.i.body.name)
     radius, few = layout.sizes.of_metres(joint.params["radius"]), centres[:: max(1, len(centres) // MOST)]
@@ -252,8 +258,9 @@ def rolled_road(joint: Joint, part: Round, layout: Layout) -> Road:
 
 
 def touched_path(touch: Joint | Force, places: np.ndarray, radius: float, layout: Layout) -> np.ndarray:
-    """Return (n, 2) the open curve of a contact in the frame of its body (rmm), with as much of its straight
-    continuations as a disc about ``places`` (T, 2) touches.
+    """Return (n, 2) the open curve of a contact in the frame of its body (rmm).
+
+    It has as much of its straight continuations as a disc about ``places`` (T, 2) touches.
     """
     points, ends = touch.params["points"], []
     path, ways = on_body(curve_path(points, False), touch.i, layout), end_ways(points, touch.i)
@@ -266,8 +273,9 @@ def touched_path(touch: Joint | Force, places: np.ndarray, radius: float, layout
 
 
 def touched_road(touch: Joint | Force, part: Round, path: np.ndarray, places: np.ndarray, layout: Layout) -> Road:
-    """Return the road of a contact along a path (n, 2) (rmm) that a round part about ``places`` (T, 2) touches. Raises
-    UserError where nothing has room behind the surface.
+    """Return the road of a contact along a path (n, 2) (rmm) that a part about ``places`` (T, 2) touches.
+
+    Raises UserError where nothing has room behind the surface.
     """
     few = places[:: max(1, len(places) // MOST)]
     road = backed(touch.name, part, path, few, part.built_radius - part.pressed - OFF)

@@ -126,7 +126,10 @@ def with_crossings(slides: Sequence[Slide], layout: Layout) -> list[Feature]:
 
 
 def _crossing(first: Slide, second: Slide) -> np.ndarray | None:
-    """Return (2,) where two rails would cross; None where they stay clear of each other, or are nearly parallel."""
+    """Return (2,) where two rails would cross.
+
+    None where they stay clear of each other, or are nearly parallel.
+    """
     if first.block == second.block:
         return None
     (a, b), (c, d) = (np.array(slide.rail_ends()) for slide in (first, second))
@@ -251,7 +254,7 @@ def _rail_distance(layout: Layout) -> float:
 
 
 def _may_share(slide: Slide, other: Slide, line: Slide, layout: Layout) -> bool:
-    """Return True if two overlapping rails can be one: the blocks never meet, and no stop is in the way of either."""
+    """Return True if two overlapping rails can be one: blocks never meet, no stop is in the way."""
     first, second = _span(slide, line), _span(other, line)
     if min(first[1], second[1]) - max(first[0], second[0]) < -_rail_distance(layout):
         return False
@@ -294,8 +297,10 @@ BESIDE = 0.5
 
 @kind("prismatic")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """Return one feature for each joint, but one for those on ground that cross, and for those of two bodies along one
-    line; several blocks along one line have a common rail where they can.
+    """Return one feature for each joint, or for several that belong together.
+
+    Those on ground that cross are one, and those of two bodies along one line; several blocks along one line have a
+    common rail where they can.
     """
     slides: list[Slide] = []
     for joint in joints:

@@ -46,7 +46,7 @@ WALL = 3.0
 
 @dataclass(frozen=True, eq=False)
 class Slide(Feature):
-    """A rail on one body and a block on another: places and directions (rmm, rad) in their frames, and the travel."""
+    """A rail on one body and a block on another: places, directions (rmm, rad) and the travel."""
 
     name: str
     rail: str

@@ -77,7 +77,7 @@ WALL = 7.0
 
 @dataclass(frozen=True, eq=False)
 class Slot(Feature):
-    """Places (rmm) of the pin on its body, and of the slot on the other: the way of the pin's middle in it."""
+    """Places (rmm) of a pin on its body and of its slot on the other, as the way of the pin's middle."""
 
     name: str
     slot: str
@@ -128,8 +128,9 @@ class Slot(Feature):
         return [*places, Anchor(self.pin, *self.pin_at, layout.sizes.eye)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """Yield the pin from its body, or the base, through the slot, and its head; a plate on ground, with its
-        posts.
+        """Yield the pin from its body, or the base, through the slot, and its head.
+
+        Where the slot is on ground, its plate and posts follow.
         """
         shape, what = disc(*self.pin_at, layout.sizes.hardware), f"the pin of {self.name}"
         plate = f"the slotted plate of {self.name}"
@@ -151,7 +152,8 @@ class Slot(Feature):
         return self.needs_under(self, levels, layout)
 
     def needs_under(self, source: object, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Yield the room for a washer between the plates, and for the head above where the pin comes from below;
+        """Yield the room for a washer between the plates, and for the head of a pin from below.
+
         ``source`` is the feature that has the slot.
         """
         fit, pivot = layout.sizes.pivot.fit, layout.sizes.pivot
@@ -178,9 +180,7 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
 
 
 def _ends(joint: Joint, m: Mechanism, travel: tuple[float, float], layout: Layout) -> tuple[float, float]:
-    """Return ends of the way of the roller's middle in the slot (rmm): limits that are near, for the slot ends
-    there.
-    """
+    """Return ends of the roller's way in the slot (rmm): near limits, for the slot ends there."""
     lower, upper = (None if end is None else layout.sizes.of_metres(end) for end in motion.sliding(joint, m))
     lower, upper = motion.reached((lower, upper), travel, FAR * layout.sizes.roller)
     return travel[0] - 1.0 if lower is None else lower, travel[1] + 1.0 if upper is None else upper
@@ -215,7 +215,7 @@ CHANNEL = 4.6
 
 @build.register(Slot)
 def slotted(slot: Slot, plan: Plan, heights: Heights) -> None:
-    """Cut the slot, and put a pin with a roller through it: from below with its head on top, from above hanging."""
+    """Cut the slot, and put a pin with a roller through it: head on top from below, else hanging."""
     sizes = plan.layout.sizes
     tool = _tool(slot.path, (sizes.roller + sizes.pivot.fit.running) / 2, heights.thickness + 2.0).translate((0, 0, -1))
     if slot.slot == "ground":
@@ -319,7 +319,7 @@ def _no_wall(slot: Slot, outer: float, layout: Layout) -> str:
 
 
 def _pin(through: list[Slot], large: bool, depth: float | None, plan: Plan, heights: Heights) -> None:
-    """From the lowest to the highest of the slots, or from its body, with a boss and a washer on each side of that."""
+    """Add the pin through all of its slots, from its body, with a boss and a washer on either side."""
     sizes = plan.layout.sizes
     pivot, fit, first = sizes.pivot, sizes.pivot.fit, through[0]
     body, (x, y) = first.pin, first.pin_at

@@ -111,8 +111,9 @@ SEAT = 5
 
 @shape_of.register(Pulley)
 def pulley_disc(pulley: Pulley, thickness: float, eyes: list[tuple[float, float, Eye]]) -> tuple[cq.Workplane, int]:
-    """Return the disc of a pulley from z = 0 up, with its eyes, and its number of through holes. One without windows
-    has small holes, so that one sees it turn.
+    """Return the disc of a pulley from z = 0 up, with its eyes, and its number of through holes.
+
+    One without windows has small holes, so that one sees it turn.
     """
     shape, holes = with_hub(extruded(circle(0, 0, pulley.root), thickness), pulley.root, thickness, eyes)
     room = pulley.root - Sizes.hardware
@@ -157,8 +158,9 @@ def rim_of(pulley: Pulley, thickness: float, z: float, seat: float) -> Solid:
 
 
 def sprocket_outline(teeth: int, radius: float, tooth: float, phase: float) -> np.ndarray:
-    """Return (n, 2): round seats for rollers on the pitch circle, the first at the angle ``phase``, and teeth between
-    them.
+    """Return (n, 2) an outline: round seats for rollers on the pitch circle, and teeth between them.
+
+    The first seat is at the angle ``phase``.
     """
     seat, pitch = 0.95 * tooth, 2 * math.pi / teeth
     turn = np.linspace(-100.0, 100.0, SEAT) * math.pi / 180 + math.pi  # about the roller, inner half
@@ -208,7 +210,10 @@ def _pulley(joint: Joint, end: int, layout: Layout) -> Pulley:
 
 
 def _fit(m: Mechanism, joint: Joint, pair: tuple[Pulley, Pulley], layout: Layout) -> None:
-    """Seats of both sprockets where the chain's rollers are at the start. Raises UserError where pulleys overlap."""
+    """Seats of both sprockets where the chain's rollers are at the start.
+
+    Raises UserError where pulleys overlap.
+    """
     places = [layout.seen(pulley.body, (pulley.x, pulley.y), "ground")[0] for pulley in pair]
     first, second = pair
     way = places[1] - places[0]

@@ -79,7 +79,7 @@ class Rack(Feature):
 
     @property
     def teeth(self) -> tuple[int, int]:
-        """Numbers of the first and the last tooth, counted from the one at ``phase``: all that pinions come to."""
+        """Numbers of the first and last tooth that pinions come to, counted from the one at ``phase``."""
         beyond = max(math.sqrt(max(p.tip**2 - (p.radius - self.tip) ** 2, 0.0)) for p in self.mates) + self.pitch
         low, high = min(way[0] for way in self.ways) - beyond, max(way[1] for way in self.ways) + beyond
         phase = self.phase or 0.0
@@ -136,8 +136,9 @@ class Rack(Feature):
 
 
 def add_way(m: Mechanism, rack: Rack, pinion: Wheel, joint: Joint, layout: Layout) -> None:
-    """Add the pinion's way along the rack. Raises UserError if its centre is not always its radius above the pitch
-    line.
+    """Add the pinion's way along the rack.
+
+    Raises UserError if its centre is not always its radius above the pitch line.
     """
     path = _path(rack, pinion, layout)
     rack.ways.append((float(path[:, 0].min()), float(path[:, 0].max())))

@@ -143,9 +143,7 @@ class Wheel(Feature):
         return None if fills else Face(self.x, self.y, self.root, math.inf if in_ring else max(self.tip, self.radius))
 
     def posts(self, layout: Layout) -> list[tuple[float, float]]:
-        """Return posts under the rim of a ring fixed to ground: a cross turned so that the fewest bodies come near
-        it.
-        """
+        """Return posts under the rim of a ring fixed to ground: a cross that the fewest bodies come near."""
         return min((self._cross(degrees) for degrees in CROSSES), key=lambda cross: _near(cross, layout))
 
     def _cross(self, degrees: float) -> list[tuple[float, float]]:
@@ -283,7 +281,10 @@ def wheel_shape(wheel: Wheel, thickness: float, eyes: list[tuple[float, float, E
 def with_hub(
     shape: cq.Workplane, root: float, thickness: float, eyes: list[tuple[float, float, Eye]]
 ) -> tuple[cq.Workplane, int]:
-    """Return a disc of that root radius with a milled-out web and its eyes, and its number of through holes."""
+    """Return a disc with a milled-out web and its eyes, and its number of through holes.
+
+    ``root`` is its radius.
+    """
     alone = all(math.hypot(x, y) < 0.01 for x, y, _ in eyes)
     holes = 0
     if alone and root - RIM_WALL > HUB + 5.0:

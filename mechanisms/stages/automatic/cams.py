@@ -379,10 +379,6 @@ def geneva_solids(drive: GenevaDrive, plan: Plan, heights: Heights) -> None:
     disc = shape.locking_disc(heights.thickness, hole)
     low = heights.bottom(drive.wheel)
     plan.make(drive.crank, f"lock_{drive.name}", placed(disc, x, y, low, math.degrees(angle)), "steel", 1)
-    if heights.bottom(drive.crank) < low:
-        start, end = heights.top(drive.crank), low
-    else:
-        start, end = low + heights.thickness, heights.bottom(drive.crank)
-    start, end = start + fit.seat, end - fit.seat
+    start, end = heights.between(drive.crank, drive.wheel, fit.seat, fit.seat)
     collar = extruded(circle(0, 0, hole + COLLAR), end - start).cut(bore(2 * hole, 0.0, end - start))
     plan.make(drive.crank, f"collar_{drive.name}", placed(collar, x, y, start), "steel", 1)

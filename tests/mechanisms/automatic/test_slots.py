@@ -287,7 +287,7 @@ def test_a_road_goes_on_under_its_wheel(half: float) -> None:
     assert (road.band is not None) == (half > 2.0)
     sides = road.path[-1:], road.feet if road.band is None else road.band.back[::-1], road.path[:1]
     assert distances(centres, np.vstack(sides)).min() > wheel.built_radius
-    solid = road._wall(0.0, 5.0).val()
+    solid = road.wall(0.0, 5.0).val()
     assert solid.isValid()
 
 

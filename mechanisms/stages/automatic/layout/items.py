@@ -175,6 +175,12 @@ class Heights:
         """Return the upper face of a body's plate."""
         return self.bottom(body) + self.thickness
 
+    def between(self, first: str, second: str, from_first: float, from_second: float) -> tuple[float, float]:
+        """Return the range between two plates, less a gap to each of them."""
+        if self.bottom(first) < self.bottom(second):
+            return self.top(first) + from_first, self.bottom(second) - from_second
+        return self.top(second) + from_second, self.bottom(first) - from_first
+
 
 def heights(
     levels: Mapping[str, int], bodies: Iterable[str], thickness: float, needs: Iterable[Need], least: float

@@ -214,14 +214,10 @@ def fixed_block(slide: Slide, plan: Plan, heights: Heights) -> None:
 def moving_rail(slide: Slide, plan: Plan, heights: Heights) -> None:
     """A rail on a moving plate, on the side where the block is."""
     fit = plan.layout.sizes.pivot.fit
-    if heights.levels[slide.rail] < heights.levels[slide.block]:
-        z0, z1 = heights.top(slide.rail) + fit.seat, heights.bottom(slide.block) - fit.axial
-        face = heights.bottom(slide.block) - fit.seat
-        gibs = face - DEPTH, face
-    else:
-        z0, z1 = heights.top(slide.block) + fit.axial, heights.bottom(slide.rail) - fit.seat
-        face = heights.top(slide.block) + fit.seat
-        gibs = face, face + DEPTH
+    z0, z1 = heights.between(slide.rail, slide.block, fit.seat, fit.axial)
+    low, high = heights.between(slide.rail, slide.block, 0.0, fit.seat)
+    above = heights.levels[slide.rail] < heights.levels[slide.block]
+    gibs = (high - DEPTH, high) if above else (low, low + DEPTH)
     if not slide.host:
         plan.make(slide.rail, f"rail_{slide.name}", _bar(slide.rail_ends(), RAIL / 2, z0, z1), "steel", 0)
         _stops(slide, z0, z1, plan)

@@ -184,10 +184,8 @@ def build_rack(rack: Rack, plan: Plan, heights: Heights) -> None:
     elif heights.bottom(rack.body) == z:
         plan.plate(rack.body, bar, (rack.x, rack.y, 0.0))
         return
-    elif heights.bottom(rack.body) < z:
-        low, high = heights.top(rack.body) + seat, z - seat
     else:
-        low, high = heights.top(rack.layer) + seat, heights.bottom(rack.body) - seat
+        low, high = heights.between(rack.body, rack.layer, seat, seat)
     plan.make(rack.body, f"rack_{rack.name}", placed(bar, z=z), "steel", 0)
     for k, (x, y) in enumerate(rack.seats(plan.layout)):
         stud = extruded(circle(x, y, STUD), high - low, low)

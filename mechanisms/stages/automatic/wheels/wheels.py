@@ -213,7 +213,7 @@ def _on_tube(wheel: Wheel, plan: Plan, heights: Heights) -> None:
     inner, outer = TUBE
     thickness = heights.thickness
     shape, windows = shape_of(wheel, thickness, [(0.0, 0.0, Eye(outer, 0.0))])
-    low, high = _to_plate(wheel, plan, heights)
+    low, high = heights.between(wheel.body, wheel.layer, plan.layout.sizes.pivot.fit.seat, 0.0)
     z = heights.bottom(wheel.layer)
     if high > low:
         tube = extruded(circle(0, 0, outer), high - low + 1.0, low - z - (1.0 if low > z else 0.0))
@@ -226,7 +226,7 @@ def _cup(wheel: Wheel, plan: Plan, heights: Heights) -> None:
     """A ring that turns: rim and wall are a piece, the bottom is the body's plate."""
     thickness = heights.thickness
     shape, holes = shape_of(wheel, thickness, [])
-    low, high = _to_plate(wheel, plan, heights)
+    low, high = heights.between(wheel.body, wheel.layer, plan.layout.sizes.pivot.fit.seat, 0.0)
     z = heights.bottom(wheel.layer)
     if high > low:
         wall = extruded(circle(0, 0, wheel.outside), high - low, low - z, [circle(0, 0, wheel.root)])
@@ -250,14 +250,6 @@ def _cup(wheel: Wheel, plan: Plan, heights: Heights) -> None:
         plan.feet += [
             Foot("", float(way[0, 0]) + u, float(way[0, 1]) + v, 1.0) for u in (-aside, aside) for v in (-aside, aside)
         ]
-
-
-def _to_plate(wheel: Wheel, plan: Plan, heights: Heights) -> tuple[float, float]:
-    """Return the range in which something between the wheel and its body's plate reaches."""
-    seat = plan.layout.sizes.pivot.fit.seat
-    if heights.bottom(wheel.body) < heights.bottom(wheel.layer):
-        return heights.top(wheel.body) + seat, heights.bottom(wheel.layer)
-    return heights.top(wheel.layer), heights.bottom(wheel.body) - seat
 
 
 @singledispatch

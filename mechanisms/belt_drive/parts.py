@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and a fan on the large pulley, which is what the belt drives."""
+"""The automatic parts, and a fan on the large pulley, which is what the belt drives."""
 
 from __future__ import annotations
 

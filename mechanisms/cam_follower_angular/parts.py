@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and a scale in degrees behind the tip, on which one reads the swing."""
+"""The automatic parts, and a scale in degrees behind the tip, on which one reads the swing."""
 
 from __future__ import annotations
 

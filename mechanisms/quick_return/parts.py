@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and what makes them a shaping machine: the ram's tool, and the work."""
+"""The automatic parts, and what makes them a shaping machine: the ram's tool, and the work."""
 
 from __future__ import annotations
 

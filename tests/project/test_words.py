@@ -21,7 +21,7 @@ LONG = 100
 AIM = 3.0, 3.0
 CEILINGS = {
     "mbsd": (3.0, 12.4, 40),
-    "mechanisms": (3.0, 25.0, 1),
+    "mechanisms": (3.0, 3.0, 1),
     "render": (3.0, 26.4, 0),
     "shared": (3.0, 3.0, 0),
     "studio": (3.0, 3.0, 0),

@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and a fan on the large pulley, which is what the belt drives."""
+"""Automatic parts, and a fan that the large pulley drives."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How leg and muscles are filmed: from the side; the poster shows the muscles that stretch the knee at work."""
+"""Film of leg and muscles from the side; the poster shows the muscles that stretch the knee at work."""
 
 from shared.shot import Camera, Shot, Sound, Surface, Trail
 

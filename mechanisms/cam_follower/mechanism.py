@@ -25,7 +25,7 @@ SPRING = 0.065
 
 @dataclass(frozen=True)
 class Params:
-    """Sizes (m), angles of the cam over which it lifts and lowers (rad), the cam's speed (rad/s), weight (m/s^2).
+    """Sizes (m), angles of lift and return (rad), speed of the cam (rad/s) and weight (m/s^2).
 
     ``follower`` is roller, flat, oscillating or valve; an oscillating one is lifted by an angle, ``lift`` over its arm.
     A valve (kg) is pushed on the cam by springs (N/m) that are pressed in by ``preload`` (m) when it is closed.

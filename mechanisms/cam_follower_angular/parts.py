@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and a scale in degrees behind the tip, on which one reads the swing."""
+"""Automatic parts, and a scale in degrees behind the tip that shows the swing."""
 
 from __future__ import annotations
 
@@ -50,15 +50,15 @@ def _scale(inner: float, outer: float, theta: list[float], low: float, high: flo
     """A sector with strokes, the zero of its angles on the x axis; every fifth stroke is long."""
     first, last = int(theta[0]) - BEYOND, int(theta[1]) + BEYOND + 1
 
-    def at(radius: float, angle: float) -> tuple[float, float]:
+    def point(radius: float, angle: float) -> tuple[float, float]:
         return radius * cos(radians(angle)), radius * sin(radians(angle))
 
-    edge = [at(inner, angle) for angle in range(first, last + 1)] + [
-        at(outer, angle) for angle in range(last, first - 1, -1)
+    edge = [point(inner, angle) for angle in range(first, last + 1)] + [
+        point(outer, angle) for angle in range(last, first - 1, -1)
     ]
     outline = cq.Wire.makePolygon([cq.Vector(x, y, 0.0) for x, y in edge], close=True)
     strokes = []
     for k, angle in enumerate(range(first + STEP, last, STEP)):
         long = 12.0 if k % 5 == 0 else 7.0
-        strokes.append(groove(at(inner + 3.0, angle), at(inner + 3.0 + long, angle), 0.9))
+        strokes.append(groove(point(inner + 3.0, angle), point(inner + 3.0 + long, angle), 0.9))
     return engraved(extruded(outline, high - low, low), strokes, high)

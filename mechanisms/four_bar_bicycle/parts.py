@@ -1,4 +1,4 @@
-"""The leg as a leg: wooden thigh and shank with its foot, a crank with a chainring; behind it the whole bicycle."""
+"""A wooden thigh and shank with its foot, a crank with a chainring, and the bicycle behind them."""
 
 from math import cos, radians, sin
 

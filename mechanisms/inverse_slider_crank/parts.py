@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and what asks for a soft motion: a cup of tea on a tray."""
+"""Automatic parts, and a cup of tea on a tray, the reason for a soft motion."""
 
 from mechanisms.automatic import automatic
 from mechanisms.inverse_slider_crank.mechanism import Params, build

@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and round the body's plate the front of a car with its driver (mm)."""
+"""Automatic parts, and the front of a car with its driver round the body's plate (mm)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and what makes them a shaping machine: the ram's tool, and the work."""
+"""Automatic parts, and the tool and the work of a shaping machine."""
 
 from __future__ import annotations
 

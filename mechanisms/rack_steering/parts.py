@@ -1,4 +1,4 @@
-"""The steering's automatic parts, and what makes it a car's: road wheels on stub axles, a steering wheel.
+"""The steering's automatic parts, road wheels on stub axles, and a steering wheel.
 
 Lengths in this file are reference millimetres (rmm, sizes.py), scaled when all is made. A road wheel is one with its
 knuckle: how it rolls is not part of the motion.

@@ -1,4 +1,4 @@
-"""How far the punch of the press strays at the end of its stroke, with bars cut to class m and pins H7/g6."""
+"""Stray of the press's punch at the end of its stroke, with bars cut to class m and pins H7/g6."""
 
 from __future__ import annotations
 

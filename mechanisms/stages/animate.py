@@ -52,8 +52,9 @@ def run(name: str, view: str = "") -> None:
 
 
 def films_of(view: str) -> list[str]:
-    """Return the views of the films to make: ``""`` is all quantities side by side. Raises UserError for unknown
-    words.
+    """Return the views of the films to make.
+
+    ``""`` is all quantities side by side. Raises UserError for unknown words.
     """
     words = [word.strip() for word in view.split(",") if word.strip()]
     for word in words:
@@ -70,7 +71,10 @@ def films_of(view: str) -> list[str]:
 
 
 def solve(name: str, parts: Parts | None) -> Solution:
-    """Return the motion; says which masses are those of the parts, and which are estimated. Raises UserError."""
+    """Return the motion, and print which masses are those of the parts and which are estimated.
+
+    Raises UserError.
+    """
     from mechanisms.stages.solve.masses import give_masses_aloud
 
     m, module, p = solving.model_of(name)
@@ -89,7 +93,10 @@ def _fresh(out: Out, parts: Parts | None, words: str) -> bool:
 
 
 def _key(parts: Parts | None, inputs: Inputs) -> str:
-    """Return the hash of all that a film follows from; ``inputs``: what mechanism.py is made of, and what it reads."""
+    """Return the hash of all that a film follows from.
+
+    ``inputs``: the files that mechanism.py is made of and reads.
+    """
     masses = parts and {body: (solids.mass, main_material(solids)) for body, solids in parts.bodies.items()}
     sources = sources_hash(*SOURCES), sources_state("mbsd"), sources_state("mbsd/drawing")
     return key_of(*sources, masses, versions(*PACKAGES), inputs.digest())

@@ -1,4 +1,4 @@
-"""Makes the bytes of a solid's files: equal solids give equal bytes, whenever and wherever they are made."""
+"""Bytes of a solid's files: equal solids give equal bytes, whenever and wherever they are made."""
 
 from __future__ import annotations
 
@@ -60,7 +60,9 @@ def _normals(corners: np.ndarray) -> np.ndarray:
 
 
 def step_bytes(solid: Any, name: str) -> bytes:
-    """STEP of a ``cadquery.Solid``, in mm. Its product is called ``name``; when it was written is left out.
+    """Return STEP of a ``cadquery.Solid`` in mm, without the time.
+
+    Its product is called ``name``.
 
     Raises UserError if the kernel cannot write its file.
     """

@@ -37,7 +37,10 @@ FORM = 'def tolerances(p): return {"far_end": {"sizes": {"crank": 5e-5}, "result
 
 
 def wished_results(name: str, m: Mechanism, p: Any) -> dict[str, Callable[..., Tolerances]]:
-    """Return by result a function that finds it. Raises UserError for an invalid request, before it computes."""
+    """Return by result the function that finds it.
+
+    Raises UserError for an invalid request, before it computes.
+    """
     module = loading.load(name, "tolerances")
     file = shown_file(name, "tolerances")
     refuse_arguments(file, module.tolerances, p)
@@ -185,7 +188,10 @@ def _stage(out: Out) -> Stage:
 
 
 def _key(parts: Parts | None, inputs: Inputs) -> str:
-    """Return the hash of all that follows; ``inputs``: what the author's files are made of, and what they read."""
+    """Return the hash of all that follows.
+
+    ``inputs``: the files that the author's code is made of and reads.
+    """
     masses = parts and {body: solids.mass for body, solids in parts.bodies.items()}
     sources = sources_hash(*SOURCES), sources_state("mbsd"), sources_state("mbsd/drawing")
     return key_of(*sources, masses, versions(*PACKAGES), inputs.digest())

@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and what is clamped: a block on a table, under a foot of rubber."""
+"""Automatic parts, and a clamped block on a table, under a foot of rubber."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How the trammel is filmed: from high up, so that grooves and ellipse read; the rod is coloured, as what is turned."""
+"""Film of the trammel from high up, so that grooves and ellipse are clear; the rod is coloured."""
 
 from shared.shot import Camera, Shot
 

@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, a windscreen behind them, and blades of rubber on the wipers."""
+"""Automatic parts, a windscreen behind them, and blades of rubber on the wipers."""
 
 from __future__ import annotations
 

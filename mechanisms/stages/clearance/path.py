@@ -1,4 +1,4 @@
-"""The motion of two pieces against each other: its path, the scale, common axes, and pieces that stay far apart."""
+"""The motion of two pieces against each other: path, scale, common axes, pieces that stay far apart."""
 
 from __future__ import annotations
 
@@ -31,8 +31,9 @@ OF_SHAPE = ("radius_first", "radius_second", "pin_radius", "length")
 
 
 def at_scale(motion: Motion, ratio: float) -> Motion:
-    """Return a motion as the proof of clearance reads it, ``ratio`` times as large; loads, masses and energies stay
-    those of the machine.
+    """Return a motion as the proof of clearance reads it, ``ratio`` times as large.
+
+    Loads, masses and energies stay those of the full-size mechanism.
     """
     bodies = {name: _body(body, ratio) for name, body in motion.bodies.items()}
     joints = {name: _joint(joint, ratio) for name, joint in motion.joints.items()}
@@ -61,8 +62,9 @@ def _times(values: list[float], ratio: float) -> list[float]:
 
 
 def what_shrinks(scale: Scale) -> str:
-    """Return the end of a refusal of parts at ``scale``: why a parts.py that fits its machine need not fit the
-    model.
+    """Return the end of an error message for parts at ``scale``.
+
+    It says why a parts.py that fits its machine need not fit the model.
     """
     running = Fit().running
     return (
@@ -218,16 +220,18 @@ class RelativePath:
         """(m,): every mm between a point and the centre adds this to its acceleration (1/s^2)."""
 
     def place(self, k: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """Return (n, 3) the centre's place (mm) and the angle (rad) in the other's frame, at times in intervals
-        ``k``.
+        """Return (n, 3): position (mm) and angle (rad) of the centre in the other's frame.
+
+        The times are in intervals ``k``.
         """
         pose = self.mover.within(k, time)
         pose[:, :2] = points(pose, self.centre)
         return relative(pose, self.still.within(k, time))
 
     def bend(self, radius: float) -> float:
-        """Return how far (mm) points within ``radius`` of the centre stray from straight lines in the intervals, in
-        all.
+        """Return how far (mm) points within ``radius`` of the centre stray from straight lines.
+
+        This holds in all intervals.
         """
         return float((self.mover.width**2 / 8 * (self.push + radius * self.spin)).sum())
 
@@ -245,7 +249,7 @@ type Axes = dict[frozenset[str], dict[str, np.ndarray]]
 
 
 def axes_of(motion: Motion, parts: Parts, where: Mapping[str, BodyPath]) -> Axes:
-    """Return axes of bodies that a revolute joint or a rod's end connects, and of those that turn on a common pin."""
+    """Return axes of bodies that share a revolute joint, a rod's end or a common pin."""
     axes: Axes = {}
     for joint in motion.joints.values():
         if joint.kind != "revolute":

@@ -1,4 +1,4 @@
-"""The gap between two pieces of which one slides along a line of the other, at every place on that line at once.
+"""The gap between two pieces of which one slides along a line of the other.
 
 Seen along the line, both stand still. So the distance of the two outlines in that view is a lower bound of their gap
 wherever they are, and it is reached where the pieces are abreast of each other. That proves a piston in its liner,
@@ -73,11 +73,11 @@ def slides_of(motion: Motion, where: Mapping[str, BodyPath]) -> Slides:
 
 
 def slide_gap(first: MeshPiece, second: MeshPiece, slides: Slides, reach: float = np.inf) -> tuple[float, float] | None:
-    """Return the gap (mm) of the two outlines along the line of their bodies, and what of it is proven; None where
-    there is no such line, or where the outlines overlap.
+    """Return the gap (mm) of the two outlines along the line of their bodies, and how much is proven.
 
-    What the other never comes within ``reach`` (mm) of along the line, as the closed end of a cylinder, is left out;
-    None as well where the gap is more than what is left out is away.
+    None where there is no such line, or where the outlines overlap. What the other never comes within ``reach`` (mm) of
+    along the line, as the closed end of a cylinder, is left out; None as well where the gap is more than what is left
+    out is away.
     """
     slide = slides.get(frozenset((first.body, second.body)))
     if slide is None:
@@ -103,7 +103,7 @@ def slide_gap(first: MeshPiece, second: MeshPiece, slides: Slides, reach: float 
 
 @dataclass(frozen=True)
 class Sliced:
-    """Slices of the mover are proven along the line, the rest is not: a valve's stem, but not its disc at the seat."""
+    """A mover of which slices are proven along the line: a valve's stem, but not its disc at the seat."""
 
     gap: float
     """Gap of these slices, mm; infinite where they stay farther than ``away``."""
@@ -154,8 +154,9 @@ def _in_body(piece: MeshPiece, part: Manifold, way: np.ndarray) -> MeshPiece:
 
 
 def _along(angle: float, through: np.ndarray) -> np.ndarray:
-    """Return (3, 4) that gives, of a point of a piece, its place across the line, its height and its place along it
-    (mm).
+    """Return (3, 4) that maps a point of a piece to its place across the line, height and place along it.
+
+    All are in mm.
     """
     c, s = np.cos(angle), np.sin(angle)
     x, y = through

@@ -1,4 +1,4 @@
-"""The ``clearance`` stage: proves that no two pieces of different bodies touch over the motion in data.json.
+"""The stage ``clearance``: proves that pieces of different bodies never touch in the motion.
 
 Every pair of pieces of two bodies is settled by the first of these that suffices:
 
@@ -63,8 +63,9 @@ SOURCES = [
 
 
 def run(name: str, scale: str = "") -> None:
-    """Check mechanism ``name``, or its model at a scale, and write clearance.json, unless motion and parts are those of
-    the last check.
+    """Check mechanism ``name``, or its model at a scale, and write clearance.json.
+
+    Nothing is done if motion and parts are those of the last check.
 
     Raises UserError naming both pieces, the time, the depth or gap, and the remedy, if two pieces come too near.
     """
@@ -113,8 +114,9 @@ def check(
     reach: float = REACH,
     title: str = "",
 ) -> Clearance:
-    """Check every pair of ``pieces`` of different bodies; ``limit`` and ``reach`` in mm. Raises as :func:`run`, with
-    ``title`` as the name, which is that of the mechanism by default.
+    """Check every pair of ``pieces`` of different bodies; ``limit`` and ``reach`` in mm.
+
+    Raises as :func:`run`, with ``title`` as the name, which is that of the mechanism by default.
     """
     from mechanisms.stages.clearance import path as bodies
     from mechanisms.stages.clearance.meshing import bands, least_in_mesh, meshes
@@ -199,14 +201,20 @@ def _clearance_of(
 
 
 def parted_bodies(parts: Parts, motion: Motion) -> list[tuple[str, str]]:
-    """Return pairs of bodies that an event parts by releasing their pin, guide or rod, which their solids could not."""
+    """Return pairs of bodies that an event parts by releasing their pin, guide or rod.
+
+    Their solids could not do so.
+    """
     released = {name: joint for name, joint in motion.joints.items() if joint.released is not None}
     rods = [(name, joint.bodies[1]) for name, joint in released.items() if name in parts.bodies]
     return rods + [joint.bodies for name, joint in released.items() if joint.pair and name not in parts.bodies]
 
 
 def _parted(parts: Parts, motion: Motion) -> str:
-    """Return words on the bodies that are not compared because an event parts them; empty if there are none."""
+    """Return a note on bodies that are not compared because an event parts them.
+
+    Empty if there are none.
+    """
     pairs = ", ".join(" and ".join(pair) for pair in parted_bodies(parts, motion))
     return f"; not compared, as an event parts them: {pairs}" if pairs else ""
 
@@ -224,7 +232,7 @@ def _refuse_lost(name: str, pieces: list[MeshPiece], motion: Motion) -> None:
 def _turn(
     first: MeshPiece, second: MeshPiece, axes: Axes, sweep: Sweep, limit: float, reach: float
 ) -> PairClearance | None:
-    """Return the gap at every angle of a pair round the joint between its bodies; None if that is not enough."""
+    """Return the gap at every angle of a pair round their bodies' joint; None if that is not enough."""
     from mechanisms.stages.clearance.turn import turn_gap
 
     axis = axes.get(frozenset((first.body, second.body)))
@@ -240,9 +248,7 @@ def _turn(
 
 
 def _slide(first: MeshPiece, second: MeshPiece, slides: Slides, limit: float, reach: float) -> PairClearance | None:
-    """Return the gap at every place along the line of a prismatic joint between two bodies; None if that is not
-    enough.
-    """
+    """Return the gap at every place along a prismatic joint of a pair; None if that is not enough."""
     from mechanisms.stages.clearance.slide import slide_gap
 
     slid = slide_gap(first, second, slides, reach)
@@ -260,10 +266,9 @@ def _sliced(
     limit: float,
     reach: float,
 ) -> PairClearance | None:
-    """Return the gap of a pair of which most is proven along a line and the rest by the motion; None if that is not
-    enough.
+    """Return the gap of a pair proven mostly along a line, the rest by the motion.
 
-    Only for a pair that stays near: else the motion alone proves it sooner.
+    None if that is not enough. Only for a pair that stays near: else the motion alone proves it sooner.
     """
     from mechanisms.stages.clearance.outlines import least_gap
     from mechanisms.stages.clearance.search import Sweep

@@ -16,9 +16,7 @@ MARGIN = 0.05
 
 
 def pose_of(solution: Any, time: float) -> tuple[list[Any], dict[str, np.ndarray]]:
-    """Return strokes of the skeleton at the output nearest to a time (s), and the path (k, 2) of each traced point, in
-    m.
-    """
+    """Return strokes of the skeleton at the output nearest to a time (s), and traced paths (k, 2) in m."""
     from mbsd.drawing.strokes import strokes_of
 
     step = int(np.abs(solution.t - time).argmin())

@@ -81,8 +81,9 @@ class _Project(Places):
         return file_hash(path)
 
     def module_state(self, name: str) -> str:
-        """Return the author's modules count by what they mean; those of the program by their bytes, as in the stages'
-        keys.
+        """Return the hash of a module: of the author's by its meaning, of the program's by its bytes.
+
+        The stages' keys do the same.
         """
         if os.path.dirname(name) == "mechanisms" or name.startswith(OURS):
             return self.file_state(name)
@@ -108,7 +109,10 @@ sources_state, package_state = PROJECT.sources_state, PROJECT.package_state
 
 
 def observed(names: Any) -> Inputs | None:
-    """Return the inputs with these names, from :meth:`Inputs.names`, as they are now; None if ``names`` are none."""
+    """Return the inputs with these names as they are now; None if ``names`` are none.
+
+    The names are from :meth:`Inputs.names`.
+    """
     return PROJECT.observed(names)
 
 

@@ -26,7 +26,10 @@ NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
 def refuse_unfit(name: str, bodies: Any) -> None:
-    """Raise UserError unless ``bodies`` is a dict of lists of Solid by body with fit names and known materials."""
+    """Raise UserError unless ``bodies`` is a dict of lists of Solid by body.
+
+    Names must be valid and materials known.
+    """
     if not isinstance(bodies, dict) or not bodies:
         raise UserError(f"{name}: parts() must return a dict of lists of Solid by body, not {type(bodies).__name__}")
     known: dict[str, str] = {}
@@ -103,9 +106,10 @@ def described_body(
     kept: KeptPieces | None = None,
     done: Callable[[], object] = bool,
 ) -> BodyParts:
-    """Describe a body and add its files to ``files``; ``places`` are those that a rod joins. ``along``: z of the solids
-    is that of the model, so masses have it, too. Pieces that are ``kept`` are not made again; ``done`` is called
-    after each piece.
+    """Describe a body and add its files to ``files``.
+
+    ``places`` are those that a rod joins. ``along``: z of the solids is that of the model, so masses have it, too.
+    Pieces that are ``kept`` are not rebuilt; ``done`` is called after each piece.
 
     Raises UserError naming the solid that is refused.
     """

@@ -176,8 +176,9 @@ def outlined(out: Out, pieces: Mapping[str, Piece], made: Iterable[Product]) -> 
 def plates_of(
     title: str, made: Sequence[Product], bed: Bed, gap: float, stem: str = "plate"
 ) -> tuple[list[Product], dict[str, bytes]]:
-    """Return the pieces with the plates that the pieces lie on, and the files of these, whose names begin with
-    ``stem``.
+    """Return the pieces with the plates that they lie on, and the files of these plates.
+
+    Their names begin with ``stem``.
     """
     items = [(k, name) for k, part in enumerate(made) if not part.bed for name in part.names]
     places = packed([made[k].piece.size[:2] for k, _ in items], bed[:2], gap)
@@ -209,7 +210,7 @@ SKIN = 1e-4
 
 
 def thinnest(triangles: np.ndarray) -> float:
-    """Return the thinnest wall (mm) of a closed mesh (n, 3, 3) that its rays find; infinite where they find none."""
+    """Return the thinnest wall (mm) of a closed mesh (n, 3, 3); infinite if its rays find none."""
     across = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     size = np.linalg.norm(across, axis=1)
     sound = size > 1e-9
@@ -224,7 +225,10 @@ def thinnest(triangles: np.ndarray) -> float:
 
 
 def _inside(triangles: np.ndarray, normals: np.ndarray, start: np.ndarray, way: np.ndarray) -> float:
-    """Return how far it is to the next face along a ray (Moeller and Trumbore 1997); infinite where that leans."""
+    """Return the distance to the next face along a ray (Moeller and Trumbore 1997).
+
+    It is infinite where that face leans.
+    """
     first, second = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
     aside = np.cross(way, second)
     volume = np.einsum("ij,ij->i", first, aside)

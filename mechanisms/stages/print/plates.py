@@ -26,7 +26,7 @@ DISTINCT = 1e-7
 
 @dataclass(frozen=True)
 class Place:
-    """Where a rectangle lies: its corner of least x and y on its plate (mm), and whether it is turned by 90 degrees."""
+    """Place of a rectangle: its corner of least x and y on its plate (mm), and a turn by 90 degrees."""
 
     plate: int
     x: float
@@ -58,8 +58,9 @@ def packed(rectangles: Sequence[tuple[float, float]], bed: tuple[float, float], 
 
 
 def _fullest(sizes: np.ndarray, room: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return bounds (m, 2, 2) of the rectangles that the fullest of several orders puts on a plate, and which these
-    are.
+    """Return bounds (m, 2, 2) of the rectangles of the fullest plate, and which these are.
+
+    Several orders are tried.
     """
     from trimesh.path.packing import rectangles_single
 
@@ -79,8 +80,9 @@ LAYER = "CUT"
 
 
 def section(step: Path, piece: Laid, height: float) -> Any:
-    """Return a ``cadquery.Workplane`` with the solid's section at ``height`` above the bed, moved to z = 0, as it is
-    laid.
+    """Return a ``cadquery.Workplane`` with the solid's section at ``height``, moved to z = 0.
+
+    ``height`` is above the bed, on which the solid is laid.
 
     Raises UserError if the file cannot be read.
     """
@@ -98,8 +100,9 @@ def section(step: Path, piece: Laid, height: float) -> Any:
 
 
 def dxf(cut: Any, thickness: float) -> bytes:
-    """Return the DXF (R2013) of a section; its layer says how thick the sheet is. No times and no random marks are in
-    it.
+    """Return the DXF (R2013) of a section; its layer gives the thickness of the sheet.
+
+    No times and no random marks are in it.
     """
     from cadquery.occ_impl.exporters.dxf import DxfDocument
 
@@ -159,7 +162,10 @@ def stl(plate: Sequence[Placed]) -> bytes:
 
 
 def three_mf(title: str, plate: Sequence[Placed]) -> bytes:
-    """Return a 3MF (mm) with an object for each kind of piece, an item for each piece, both with names, and colours."""
+    """Return a 3MF (mm) with an object for each kind of piece and an item for each piece.
+
+    Both have names and colours.
+    """
     import lib3mf
 
     model: Any = lib3mf.get_wrapper().CreateModel()

@@ -44,8 +44,9 @@ _LENGTH = re.compile(r"[0-9]+(\.[0-9]*)?")
 
 
 def run(name: str, bed: str = "", gap: str = "", scale: str = "") -> None:
-    """Lay out the pieces of mechanism ``name``; ``bed`` is like 220x220 or 220x220x250, ``gap`` like 5 (mm), ``scale``
-    like 1:20 for the pieces of a model.
+    """Lay out the pieces of mechanism ``name`` on beds.
+
+    ``bed`` is like 220x220 or 220x220x250, ``gap`` like 5 (mm), ``scale`` like 1:20 for the pieces of a model.
 
     A piece that is larger than the bed is left out with a warning that names it and the bed it needs. Raises UserError
     for a bed or a gap that is none, and where the files of parts.json are not those that it describes.
@@ -111,7 +112,7 @@ def gap_of(text: str) -> float:
 
 
 def _tell_large(name: str, parts: list[Product], bed: Bed, ratio: float) -> None:
-    """Name the pieces that are larger than the bed, the largest first, with the bed and the scale that fit all."""
+    """Name the pieces larger than the bed, largest first, with the bed and the scale that fit all."""
     if not parts:
         return
     times = {part.name: max(own / length for own, length in zip(part.piece.size, bed, strict=True)) for part in parts}

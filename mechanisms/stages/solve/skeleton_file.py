@@ -19,8 +19,9 @@ if TYPE_CHECKING:
 
 
 def body_colours(m: Mechanism, parts: Parts | None) -> dict[str, str]:
-    """Return the ink (``#rrggbb``, on light paper) of each moving body; bodies of one material have shades that
-    differ.
+    """Return the ink (``#rrggbb``, on light paper) of each moving body.
+
+    Bodies of one material have shades that differ.
     """
     from mbsd.drawing.look import INKS, apart, colours_by_role
 

@@ -1,4 +1,4 @@
-"""Looks as data: light, ground, background and exposure of a picture; Blender and the page translate them."""
+"""Looks as data: light, ground, background and exposure of a picture, for Blender and the page."""
 
 from __future__ import annotations
 
@@ -36,7 +36,10 @@ class Softbox(msgspec.Struct, kw_only=True, frozen=True):
 
 
 class Sun(msgspec.Struct, kw_only=True, frozen=True):
-    """Parallel light from the direction of ``place``: W/m^2; ``angle`` is the disc's, in degrees: soft shadows."""
+    """Parallel light from the direction of ``place``, in W/m^2.
+
+    ``angle`` is the disc's, in degrees, and makes shadows soft.
+    """
 
     place: Place
     power: float
@@ -347,7 +350,7 @@ LARGE = 0.8
 
 @dataclass(frozen=True)
 class Family:
-    """Facts that decide the look: how a machine stands, if gas or a motor moves it, the diagonal of its sweep (m)."""
+    """Facts that decide the look: stand, gas or motor drive, the diagonal of its sweep (m)."""
 
     mount: Kind
     engine: bool
@@ -362,9 +365,10 @@ class Family:
 
 
 def chosen(family: Family) -> str:
-    """Return the look that suits: vehicles are on a road, engines in the dark studio, what is left to itself before
-    white; what is driven stands on a bench, or in daylight where it is too large for one or hangs at a wall, and in the
-    studio where it lies.
+    """Return the look that suits a family.
+
+    Vehicles are on a road, engines in the dark studio, what is left to itself before white; what is driven stands on a
+    bench, or in daylight where it is too large for one or hangs at a wall, and in the studio where it lies.
     """
     if family.mount == "ground":
         return "road"

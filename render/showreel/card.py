@@ -1,4 +1,4 @@
-"""The title before a film: the film's first picture, dark and out of focus, with its name; then it becomes sharp."""
+"""The title before a film: its first picture, dark and blurred, with its name; then it becomes sharp."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Chooses the shots of a story and their seconds, so that it costs little more than the loop film of the machine."""
+"""Choice of a story's shots and seconds, so that it costs little more than the loop film."""
 
 from __future__ import annotations
 
@@ -35,9 +35,11 @@ def planned(
     film: Film, forces: Film | None, reasons: Sequence[Reason], preset: Preset, seconds: float = 0.0,
     cut: Film | None = None,
 ) -> Story:  # fmt: skip
-    """Return the story of a film: ``forces`` is the same with arrows, None where nothing has any, ``cut`` the same cut
-    open, None of a shot without a section; the first of ``reasons`` is what time stops for, unless the shot asks for
-    another. With ``seconds`` it is a loop of that length.
+    """Return the story of a film.
+
+    ``forces`` is the same with arrows, None where nothing has any, ``cut`` the same cut open, None of a shot without a
+    section; time stops for the first of ``reasons``, unless the shot asks for another. With ``seconds`` it is a loop of
+    that length.
 
     Raises UserError with place and remedy for wishes of the shot that cannot be.
     """
@@ -107,7 +109,10 @@ SHOTS: dict[str, Callable[[Scenery], Shot | None]] = {
 
 
 def _wished_first(mechanism: str, event: str | None, reasons: Sequence[Reason]) -> list[Reason]:
-    """Return the reasons, that of the shot's ``event`` first. Raises UserError where nothing like it ever happens."""
+    """Return the reasons, that of the shot's ``event`` first.
+
+    Raises UserError if nothing like it ever happens.
+    """
     if event is None:
         return list(reasons)
     for reason_ in reasons:

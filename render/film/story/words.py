@@ -130,8 +130,9 @@ def srt(captions: Sequence[Caption]) -> str:
 
 
 def captions_of(text: str) -> list[Caption]:
-    """Return the captions of a SubRip file, also of one that another program has saved. Raises ValueError naming the
-    words that stand where times should.
+    """Return the captions of a SubRip file, also of one that another program has saved.
+
+    Raises ValueError naming the words that stand where times should.
     """
     captions = []
     for block in re.split(r"\n\s*\n", text.lstrip("\ufeff").replace("\r\n", "\n").strip()):

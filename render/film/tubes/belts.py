@@ -146,8 +146,9 @@ class Placing:
 
 
 def belts(motion: Motion, held: Mapping[str, Held]) -> Iterator[Belt]:
-    """Yield all belts whose pulleys say where it lies (``held``, by the names of joints), if there is room for a
-    path.
+    """Yield all belts whose pulleys have a place, if there is room for a path.
+
+    ``held``: the places, by the names of joints.
     """
     time = np.asarray(motion.time)
     for name, joint in motion.joints.items():

@@ -55,8 +55,9 @@ class Trails:
         ]
 
     def paths(self, frame: float) -> list[list[Point]]:
-        """Return where each point was, from now back to the end of its tail; where an impact turned it is among the
-        places.
+        """Return where each point was, from now back to the end of its tail.
+
+        Where an impact turned it is among the places.
         """
         out = []
         for trail, rings in zip(self.trails, self._rings, strict=True):

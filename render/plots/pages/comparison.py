@@ -221,7 +221,7 @@ Series = tuple[np.ndarray, np.ndarray]
 
 
 def spectra_figure(name: str, motions: Mapping[str, Motion], asked: Sequence[str]) -> Figure | None:
-    """Return a panel for each component of what is asked for; None where no motion has any, or none repeats."""
+    """Return a panel for each component asked for; None where no motion has any, or none repeats."""
     panels = _panels(motions, asked)[:PANELS]
     if not panels:
         return None

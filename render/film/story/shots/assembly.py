@@ -58,7 +58,10 @@ def _named(scenery: Scenery) -> list[tuple[str, float]]:
 
 
 def _side(places: list[tuple[float, float, str, str]], right: bool, row: float, top: float, low: float) -> list[Leader]:
-    """Return names at one side, from above in the order of their places, so that no two lines cross; ``row`` apart."""
+    """Return names at one side, ``row`` apart, in the order of their places.
+
+    They go down from above, so that no two lines cross.
+    """
     places = sorted(places, key=lambda place: place[1])
     heights = [min(max(y, top), low) for _, y, _, _ in places]
     for k in range(1, len(heights)):

@@ -1,4 +1,4 @@
-"""Geometry that follows from files: belts round two pulleys, rods between two places, and reactions on what moves."""
+"""Geometry that follows from files: belts round two pulleys, rods between two places, and reactions."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ BALANCED = 1e-13
 NOISE = 1e-14
 """Fraction of the stiffness: what a displacement by rounding changes in the loads."""
 ACCEPTED = 1e-9
-"""What counts as balanced where rounding allows no further step."""
+"""Residual that counts as balanced where rounding allows no further step."""
 AWAY, TURNED = 20.0, 25.0
 """Sizes, and rad, from its start beyond which a mechanism runs away."""
 GROWN = 1e3

@@ -163,7 +163,7 @@ class Packed:
     size: float
     """Characteristic length (m): the largest distance between joints, or joint and centre of mass, of one body."""
     constant: tuple[bytes, ...] | None
-    """What ``numbers`` has of all but the angle offsets."""
+    """The bytes of ``numbers`` but for the angle offsets."""
     phases: dict[str, float] = field(default_factory=dict)
     """Constants of meshes with play (m) by the names of their forces; see mbsd/arrays/starts.py."""
     states: int = 0

@@ -274,7 +274,7 @@ CHECKS: dict[str, Callable[[str, Any], object]] = {
 }
 """By annotation; they return what the function is given. Bodies and markers enter theirs (mbsd/model/body.py)."""
 ORDERED = {"Body | str", "Marker"}
-"""What is easily given at the wrong place: errors of these tell the order of the arguments."""
+"""Types that are easily given at the wrong place: their errors tell the order of the arguments."""
 
 
 def annotation_of(parameter: inspect.Parameter) -> str:

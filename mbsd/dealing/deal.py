@@ -1,4 +1,7 @@
-"""Deals orders out to workers: to each what it can do, nothing lost with one that goes, nothing kept twice."""
+"""Deal of orders to workers: each gets what it can do, nothing is lost or kept twice.
+
+Work of a worker that goes is dealt again.
+"""
 
 from __future__ import annotations
 
@@ -38,7 +41,7 @@ class Part(NamedTuple):
     results: list[tuple[Any, Any]]
     """Keys and results, each key once."""
     note: Any
-    """What it said of them together; None where there is nothing."""
+    """The worker's note on them together; None if there is none."""
     worker: str
 
 
@@ -76,7 +79,7 @@ class Deal:
         self._lost_one = False
         """True if a worker that was fit has gone; whoever keeps it may start it again."""
         self._reported = ""
-        """What was said of the waiting."""
+        """The last report on the waiting."""
 
     def results(self) -> Iterator[tuple[Any, Any, str]]:
         """Yield key, result and worker of every order as they come, each once. Raises the voice's error."""

@@ -155,7 +155,10 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def literal(draw: F) -> F:
-    """Return ``draw`` with names shown as written: matplotlib takes text between dollar signs for a formula."""
+    """Return ``draw`` with names shown as written.
+
+    Matplotlib takes text between dollar signs for a formula.
+    """
 
     @functools.wraps(draw)
     def inner(*given: Any, **named: Any) -> Any:

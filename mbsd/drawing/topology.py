@@ -1,4 +1,4 @@
-"""The topology as SVG: bodies as boxes, joints, drivers and forces as signs between them, redundant ones in red.
+"""Topology as SVG: bodies as boxes, joints, drivers and forces between them, redundant ones in red.
 
 A kind without a sign of its own gets a diamond; drivers a turning or a straight arrow, forces a zigzag. Numbers in SVG
 are given to a tenth of a pixel, so that equal diagrams are equal bytes.

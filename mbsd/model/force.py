@@ -166,7 +166,7 @@ class ForceKind(ByName):
 
     name: str
     elements: Callable[[Force], tuple[Element, ...]] = _no_elements
-    """What a force of this kind is made of."""
+    """Elements of a force of this kind."""
     example: Callable[[Any, Marker, Marker], object] | None = None
     """Adds one of this kind between two markers of different bodies; must be given."""
     effort: str = ""
@@ -193,7 +193,7 @@ class ForceKind(ByName):
     chamber: Callable[[Force, Masses], Chamber] | None = None
     """The gas behind a piston that its effort comes from, if it does."""
     states: States | None = None
-    """What it carries through a motion beside coordinates and velocities, if it does; it then acts ``along`` a line."""
+    """States that it carries through a motion beside coordinates and velocities; it then acts ``along`` a line."""
     oil: Callable[[Force], OilCylinder] | None = None
     """The cylinder of oil that its effort and its states come from, if they do."""
     outside: bool = False
@@ -203,7 +203,7 @@ class ForceKind(ByName):
     on_bodies: bool = False
     """True if it acts on bodies as a whole, and its markers are no places."""
     look: str = ""
-    """What pictures of solids draw for it: one of ``LOOKS`` in mbsd/model/joint.py."""
+    """Its look in pictures of solids: one of ``LOOKS`` in mbsd/model/joint.py."""
     motor: str = ""
     """The law by which it drives a mechanism as a motor does, if it has such a law."""
     sign: str = ""

@@ -97,7 +97,7 @@ class JointKind(ByName):
     """Where its force acts if that is beside marker j: on a "line" along the x axis of marker i, a "curve" of body i,
     between "discs" about both markers, or at a "place" that follows from its torque."""
     look: str = ""
-    """What pictures of solids draw for it: one of ``LOOKS`` in mbsd/model/joint.py."""
+    """Its look in pictures of solids: one of ``LOOKS`` in mbsd/model/joint.py."""
     symmetry: Callable[[Mapping[str, Any]], int] | None = None
     """From params: the order n of the rotational symmetry of body j about marker j, where its equations do not tell
     n-th parts of a turn apart, as of a wheel that is indexed by its slots.

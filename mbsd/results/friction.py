@@ -20,7 +20,7 @@ class FrictionView(Suggesting):
     rate: np.ndarray
     """At which it turns (rad/s) or slides (m/s): of its second marker against its first."""
     normal: np.ndarray
-    """What presses it, without preload (N)."""
+    """Normal force, without preload (N)."""
     force: np.ndarray
     """On its second body, along the way (N), or about the pin (N m)."""
 

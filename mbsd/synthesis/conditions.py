@@ -72,7 +72,10 @@ def four_bar(m: Model, packed: Packed) -> list[tuple[int, int]]:
 
 
 def grashof_excess(lengths: np.ndarray) -> np.ndarray:
-    """Return (n,) s + l - p - q of lengths (n, 4), relative to their sum; positive where Grashof's condition fails."""
+    """Return (n,) s + l - p - q of lengths (n, 4), relative to their sum.
+
+    It is positive where Grashof's condition fails.
+    """
     ordered = np.sort(lengths, axis=1)
     return (ordered[:, 0] + ordered[:, 3] - ordered[:, 1] - ordered[:, 2]) / ordered.sum(axis=1)
 

@@ -66,7 +66,7 @@ class Place:
 
 
 def free_side(directions: list[float]) -> np.ndarray:
-    """Return down, else up, left or right: the first with room beside links that leave at these angles (rad)."""
+    """Return down, up, left or right: the first with room beside links at these angles (rad)."""
     best, room = -math.pi / 2, -1.0
     for side in (-math.pi / 2, math.pi / 2, math.pi, 0.0):
         nearest = min((abs((side - d + math.pi) % (2 * math.pi) - math.pi) for d in directions), default=math.pi)

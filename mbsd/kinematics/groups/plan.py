@@ -32,7 +32,7 @@ LETTERS = {
 """How groups call joints and drivers, by their constraints: pin, slide, weld, slot, driver of an angle, rod or
 actuator, driver along an axis."""
 DRIVERS = "DA"
-"""What only a driver is made of; a distance is a rod or an actuator."""
+"""Letters that only a driver has; a distance is a rod or an actuator."""
 
 
 def plan_groups(packed: Packed, q0: np.ndarray, redundant_rows: int) -> Groups | None:

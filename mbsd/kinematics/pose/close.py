@@ -198,9 +198,9 @@ def close_holding(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray) ->
 
 
 def damped(step: np.ndarray) -> tuple[np.ndarray, float]:
-    """Return ``step`` (n,) no longer than ``LONGEST_STEP``, and how far it moves or turns a body, in sizes or rad.
+    """Return ``step`` (n,) no longer than ``LONGEST_STEP``, and how far it moves or turns a body.
 
-    The world's axes do not matter.
+    The latter is in sizes or rad. The world's axes do not matter.
     """
     x, y, angle = step.reshape(-1, 3).T
     longest = float(np.maximum(np.hypot(x, y), np.abs(angle)).max(initial=0.0))

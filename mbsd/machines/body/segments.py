@@ -55,7 +55,10 @@ class Segment:
 
 @dataclass(frozen=True)
 class SegmentTable:
-    """The segments of a body by limb; those of one limb lie along one line and do not move against each other."""
+    """The segments of a body by limb.
+
+    Those of one limb lie along one line and do not move against each other.
+    """
 
     name: str
     foot: Segment

@@ -85,7 +85,10 @@ def crankshaft(
 
 
 def _of_points(m: Mechanism, name: str, points: np.ndarray, spin: float) -> Body:
-    """Return the body of point masses (n, 4) of m, x, y, z, and an inertia that turns about the origin beside them."""
+    """Return the body of point masses (n, 4) of m, x, y, z, and an inertia beside them.
+
+    The inertia turns about the origin.
+    """
     mass, at, z = points[:, 0], points[:, 1:3], points[:, 3]
     total = float(mass.sum())
     if total == 0.0:

@@ -75,7 +75,7 @@ def engine(
     block: Block | None = None,
     name: str | None = None,
 ) -> Mechanism:
-    """Return an engine of a layout by name ("V8", "I4", "flat-6", "radial-5", ...) or of a :class:`Layout`.
+    """Return an engine of a layout by name ("V8", "I4", "flat-6", "radial-5", ...) or :class:`Layout`.
 
     ``bore``, ``stroke``, ``rod`` (m, between pin and wrist pin); ``spacing`` of neighbouring throws along the shaft (m,
     1.2 bores by default); ``angle``, ``throws``, ``split`` (degrees): those of :func:`named`; ``bank_offset``: how far

@@ -1,4 +1,4 @@
-"""Master rods: of all rods on a throw one runs on the crank pin, and the others on knuckle pins around its big end.
+"""Master rods: one rod of a throw runs on the crank pin, the others on knuckle pins round its big end.
 
     P = r e^(i p)                                  the crank pin; p: direction of the throw
     K = P + k e^(i (g + a)),  g = b_m - asin((r / l) sin(p - b_m))       g: direction of the master rod, b_m its bank
@@ -75,7 +75,7 @@ class Knuckle:
     """How far the shaft turns from the top dead centre of the layout to that of the piston (rad)."""
 
     def rod_starts(self, master: float, pin: complex, axis: float) -> float:
-        """Return the rod's direction (rad) from that of the master rod, the crank pin (m) and the cylinder's axis."""
+        """Return the rod's direction (rad) from the master rod's, the crank pin (m), the cylinder's axis."""
         side = ((pin + self.radius * cmath.exp(1j * (master + self.angle))) * cmath.exp(-1j * axis)).imag
         return axis - math.asin(side / self.motion.rod)
 
@@ -83,7 +83,10 @@ class Knuckle:
 def knuckles(
     plan: Layout, name: str, rods: str | MasterRod | None, throw: float, rod: float, bore: float
 ) -> tuple[MasterRod | None, dict[int, Knuckle]]:
-    """Return the knuckle pins by index of their cylinder; ``rods`` None: of radial engines alone. Raises ModelError."""
+    """Return the knuckle pins by index of their cylinder.
+
+    ``rods`` None: of radial engines alone. Raises ModelError.
+    """
     if isinstance(rods, str) and rods not in WAYS:
         raise ModelError(f"engine '{name}': rods '{rods}'; they are 'master', 'pin' or MasterRod(...)")
     if rods == "pin" or (rods is None and not is_radial(plan)):

@@ -1,7 +1,8 @@
-"""Overhead camshafts: one on each bank, turned at half speed by a belt, with two valves in line over each cylinder.
+"""Overhead camshafts: one on each bank, belt-driven at half speed, two valves over each cylinder.
 
-The cams open flat tappets by a lift without jumps of acceleration (modified trapezoid up and down again). Of a crank
-angle phi counted from the top dead centre that fires, and a ramp beyond the angles of the cycle of the gas,
+The valves of a cylinder are in line. The cams open flat tappets by a lift without jumps of acceleration (modified
+trapezoid up and down again). Of a crank angle phi counted from the top dead centre that fires, and a ramp beyond the
+angles of the cycle of the gas,
 
     intake   opens at 2 pi - ramp,              closes at 4 pi + intake_closes + ramp
     exhaust  opens at exhaust_opens - ramp,     closes at 2 pi + ramp
@@ -76,7 +77,10 @@ class ValveTrain:
             not_negative_number("engine: mass of a valve", self.mass, "kg")
 
     def timing(self, gas: GasCycle | None) -> dict[str, tuple[float, float]]:
-        """Return crank angles (rad, from the firing top dead centre) where each valve begins to open and is closed."""
+        """Return crank angles (rad, from the firing top dead centre) at which valves begin to open and close.
+
+        A valve is closed at the latter.
+        """
         opens, closes = (gas.exhaust_opens, gas.intake_closes) if isinstance(gas, FourStroke) else (math.pi, -math.pi)
         ramp = math.radians(self.ramp)
         return {

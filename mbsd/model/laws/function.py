@@ -119,7 +119,7 @@ class Fitted(Function):
     jumps: tuple[float, ...] = ()
     """Where f itself jumps."""
     missed: str | None = None
-    """What could not be fitted, in words."""
+    """The part that could not be fitted, in words."""
 
     @property
     def given_derivatives(self) -> bool:

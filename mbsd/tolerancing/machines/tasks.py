@@ -118,7 +118,7 @@ def _notes(known: Sequence[str], loose: Sequence[Any]) -> list[str]:
 def alone(owner: str, machines: Machines, columns: Sequence[Any]) -> float:
     """The result of the mechanism as it is given. Raises ModelError where it has none."""
     if isinstance(machines, OneByOne):
-        value = machines.at(np.zeros(len(columns)))
+        value = machines.evaluate(np.zeros(len(columns)))
         answers = Answers(np.array([value]))
     else:
         answers = machines(np.zeros((1, len(columns))))

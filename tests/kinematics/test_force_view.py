@@ -18,7 +18,7 @@ from mbsd.testing.forces import example
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 HALF = 0.0025
-"""Of an interval (s)."""
+"""Half of an interval (s)."""
 
 
 def unbalanced(sol: Solution) -> float:

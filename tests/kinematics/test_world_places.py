@@ -15,7 +15,7 @@ from mbsd.model.body import Body
 from tools.models import four_bars
 
 A, B, C, D = (0.0, 0.0), (0.03, 0.04), (0.15, 0.10), (0.12, 0.0)
-"""Of a four-bar as drawn (m)."""
+"""Pins of a four-bar as drawn (m)."""
 
 
 def drawn(frames: dict[str, tuple[float, float, float]]) -> Mechanism:

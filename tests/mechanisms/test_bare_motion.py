@@ -16,7 +16,7 @@ from mechanisms.stages.solve.masses import HALF_WIDTH, THICKNESS, bare_solution,
 from shared.contract import read_motion
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
-from tests.mechanisms.author_project import Project, put
+from tests.mechanisms.author_project import Project, write_file
 
 PENDULUM = """
 from mbsd import Mechanism
@@ -150,7 +150,7 @@ def test_a_folder_without_parts_is_solved_and_says_how_heavy_it_took_its_bodies(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, out_root: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     project = Project(tmp_path / "project", monkeypatch, solve_stage)
-    put("mechanisms/arm/mechanism.py", PENDULUM.format(mass="") + "\nDURATION = 0.2\n")(project)
+    write_file("mechanisms/arm/mechanism.py", PENDULUM.format(mass="") + "\nDURATION = 0.2\n")(project)
     assert project.run()
     said = capsys.readouterr().out
     assert "solve: arm: no parts yet, so masses are estimated" in said
@@ -160,7 +160,7 @@ def test_a_folder_without_parts_is_solved_and_says_how_heavy_it_took_its_bodies(
     assert motion.bodies["arm"].mass > 0.1
     assert motion.period is None
     assert not project.run()
-    put("mechanisms/arm/mechanism.py", PENDULUM.format(mass=", mass=2.5") + "\nDURATION = 0.2\n")(project)
+    write_file("mechanisms/arm/mechanism.py", PENDULUM.format(mass=", mass=2.5") + "\nDURATION = 0.2\n")(project)
     assert project.run()
     assert "estimated" not in capsys.readouterr().out
     assert read_motion(Out("arm").motion).bodies["arm"].mass == 2.5

@@ -22,7 +22,7 @@ def press(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Press:
 
 
 def meshed(monkeypatch: pytest.MonkeyPatch, stop_after: int | None = None) -> list[object]:
-    """What is meshed from now on; after so many pieces the user stops it."""
+    """Yield the list of pieces meshed from now on; after so many pieces the user stops it."""
     made: list[object] = []
 
     def counting(shape: object, tolerance: float | None = None) -> bytes:

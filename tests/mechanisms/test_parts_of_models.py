@@ -97,13 +97,13 @@ def _recorded(monkeypatch: pytest.MonkeyPatch, sides: list[float]) -> list[dict[
         asked.append(None if masses is None else {body: mass.mass for body, mass in masses.items()})
         return bare_solution(name, masses)
 
-    def made(m: Mechanism, solution: Any) -> Any:
+    def build_parts(m: Mechanism, solution: Any) -> Any:
         side = sides[min(len(asked), len(sides)) - 1]
         cube = [Solid("arm", cq.Workplane().box(side, side, side), "steel", 0)]
         return SimpleNamespace(solids=lambda: {"ground": cube, "arm": cube})
 
     monkeypatch.setattr(automatic_solids, "bare_solution", solved)
-    monkeypatch.setattr(automatic, "automatic", made)
+    monkeypatch.setattr(automatic, "automatic", build_parts)
     return asked
 
 

@@ -21,7 +21,7 @@ from shared.contract.consistency import refuse_inconsistent_motion
 
 
 SIZE, PROVEN = 0.2, 0.2
-"""Of the truss (m), and what the proof may doubt of its bars (mm)."""
+"""Size of the truss (m), and doubt that the proof may have of its bars (mm)."""
 
 
 def _truss() -> Mechanism:

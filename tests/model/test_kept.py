@@ -1,4 +1,4 @@
-"""What a solution keeps for the next one depends on all that it was found from."""
+"""Results kept for the next solution depend on all inputs of the first."""
 
 from __future__ import annotations
 

@@ -26,9 +26,9 @@ OPTIONAL = {
     "rich": "study",
     "distributed": "cluster",
 }
-"""What single methods ask for, and the extra that brings it."""
+"""Extras that single methods need."""
 PACKAGE = {"imageio_ffmpeg": "imageio-ffmpeg", "PIL": "pillow"}
-"""Of what is imported under another name."""
+"""Packages that are imported under another name."""
 
 
 def test_the_solver_imports_its_three_packages_and_its_extras_alone() -> None:

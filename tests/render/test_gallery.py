@@ -22,7 +22,7 @@ from tools.models.motions import bouncing_ball, four_bar_motion
 
 
 def noise(path: Path, size: tuple[int, int]) -> None:
-    """What a JPEG is worst at."""
+    """Return noise, the worst case of a JPEG."""
     path.parent.mkdir(parents=True, exist_ok=True)
     Image.fromarray(np.random.default_rng(1).integers(0, 255, (size[1], size[0], 3), dtype=np.uint8)).save(path)
 

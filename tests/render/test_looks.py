@@ -23,7 +23,7 @@ from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, Out, mechanism_names
 
 MOST = 1 / 3
-"""Of the gallery, with one look."""
+"""Part of the gallery that may have one look."""
 
 
 def test_each_name_has_its_look_and_no_other():

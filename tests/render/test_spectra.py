@@ -203,7 +203,7 @@ def test_a_clockwise_driver_has_its_angle_as_axis_and_tells_how_long_a_turn_take
 
 @pytest.fixture
 def mechanism_py(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, out_root: Path) -> Path:
-    """Of a four-bar that is solved, for what SPECTRA says; of its other plots the energy alone is drawn."""
+    """Return a solved four-bar with these SPECTRA; of its other plots the energy alone is drawn."""
     monkeypatch.setattr(paths, "MECHANISMS", tmp_path)
     monkeypatch.setattr(plots, "plots_of", lambda _: ["energy"])
     (tmp_path / "four_bar").mkdir()

@@ -58,7 +58,7 @@ class Folder:
         os.utime(file, (1e9, 1e9))  # before this process began
 
     def study(self, processes: int = 1, keep: bool = True, path: Path | None = None) -> list[float]:
-        """What measure gives at two points; ``computed`` says how many of them were not known."""
+        """Return measures at two points; ``computed`` is the number of points that were not known."""
         self.forget()
         self.computed = 0
         with self.patch.context() as patch:

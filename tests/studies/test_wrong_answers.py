@@ -189,7 +189,7 @@ def test_a_worker_that_ends_each_time_is_not_the_points_fault(alone: Any) -> Non
 
 
 def test_a_result_that_is_lost_with_its_worker_while_it_is_fetched_is_computed_again(alone: Any) -> None:
-    """What was on its way never comes, and nobody waits for it."""
+    """The result on its way never comes, and nobody waits for it."""
     over = threading.Event()
 
     def goes() -> None:

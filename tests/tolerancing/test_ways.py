@@ -143,7 +143,7 @@ def failing() -> Tolerances:
 
 
 def test_machines_that_do_not_close_are_counted(failing: Tolerances) -> None:
-    """Those whose crank turns: shortest and longest link are no longer than the other two."""
+    """The crank turns if shortest and longest link are no longer than the other two."""
     crank, coupler, rocker = (np.array([0.04, 0.12, 0.0403]) + failing.deviations).T
     lengths = np.sort(np.column_stack([crank, coupler, rocker, np.full(len(crank), 0.12)]), axis=1)
     grashof = (lengths[:, 0] + lengths[:, 3] <= lengths[:, 1] + lengths[:, 2]) & (lengths[:, 0] == crank)
@@ -239,7 +239,7 @@ def test_corners_that_all_fail_have_no_worst_case() -> None:
 
 
 def test_a_function_that_fails_for_a_machine_fails_that_machine_alone() -> None:
-    """What it gives besides numbers is refused, and so is a function that fails for the machine as it is given."""
+    """A result that is no number is refused, and so is a function that fails for the given machine."""
 
     def root(a: float = 1.0) -> float:
         if a > 1.08:

@@ -109,7 +109,7 @@ def test_what_keeps_out_of_the_way_passes() -> None:
 
 @pytest.mark.parametrize("crossed", [False, True])
 def test_a_post_in_a_strand_is_refused(crossed: bool) -> None:
-    """Of an open belt the upper strand, of a crossed one where the strands cross."""
+    """The post is in the upper strand of an open belt, and where the strands of a crossed one cross."""
     motion = solved(drive(crossed, turn=0.0), "a", "b")
     lean = math.asin(20 / 120)  # upper tangent of an open belt: 30 mm over the line at its middle
     at = (10 + 120 * 20 / 60, 20.0) if crossed else (10 + 60, 20.0 + 30 / math.cos(lean) + 0.9)

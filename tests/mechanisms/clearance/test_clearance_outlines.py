@@ -40,14 +40,14 @@ def _joined(*pieces: MeshPiece) -> MeshPiece:
     from functools import reduce
 
     solid = reduce(lambda a, b: a + b, (piece.manifold for piece in pieces))
-    return _of(pieces[0], solid)
+    return _mesh_piece(pieces[0], solid)
 
 
 def _less(piece: MeshPiece, other: MeshPiece) -> MeshPiece:
-    return _of(piece, piece.manifold - other.manifold)
+    return _mesh_piece(piece, piece.manifold - other.manifold)
 
 
-def _of(piece: MeshPiece, solid: object) -> MeshPiece:
+def _mesh_piece(piece: MeshPiece, solid: object) -> MeshPiece:
     mesh = solid.to_mesh64()  # pyright: ignore[reportAttributeAccessIssue]
     return MeshPiece(piece.body, piece.name, np.asarray(mesh.vert_properties)[np.asarray(mesh.tri_verts)])
 

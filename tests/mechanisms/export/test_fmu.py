@@ -42,13 +42,13 @@ def unit(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., str]:
     """The file of a mechanism's unit."""
     folder = tmp_path_factory.mktemp("units")
 
-    def made(m: Mechanism, duration: float = 1.0, steps: int = 50) -> str:
+    def write(m: Mechanism, duration: float = 1.0, steps: int = 50) -> str:
         content, _ = fmu(m.simulate(duration, steps=steps, tolerance=1e-9))
         path = folder / f"{m.name}{len(list(folder.iterdir()))}.fmu"
         path.write_bytes(content)
         return str(path)
 
-    return made
+    return write
 
 
 def outputs(path: str) -> list[str]:

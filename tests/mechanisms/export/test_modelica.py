@@ -166,7 +166,7 @@ def _start(text: str) -> float:
 
 
 def test_a_wrong_number_is_noticed() -> None:
-    """Of the check above: a mass or a sign that is another."""
+    """The check above notices another mass or another sign."""
     sol = double_pendulum()
     text, _ = modelica(sol)
     for right, wrong in (("m=0.4", "m=0.5"), ("frame_b.fx = -f*", "frame_b.fx = f*"), ("c=0.1", "c=0.2")):

@@ -196,7 +196,7 @@ def filmed(section: Section | float) -> Film:
 
 
 def volume(shape: Tube) -> float:
-    """Of what a tube encloses (m^3), by the divergence theorem."""
+    """Return the volume within a tube (m^3), by the divergence theorem."""
     a, b, c = np.moveaxis(shape[0][shape[2].reshape(-1, 3)], 1, 0)
     return float((a * np.cross(b, c)).sum() / 6)
 

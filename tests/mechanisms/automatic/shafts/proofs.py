@@ -40,7 +40,7 @@ def checked(m: Mechanism) -> tuple[Automatic, Bodies]:
 
 
 def box(solid: Solid) -> BoundBox:
-    """Of the mesh of a solid: that of its curved faces is wider."""
+    """Return the box of a solid's mesh: the box of its curved faces is wider."""
     shape = solid.shape.val()
     shape.mesh(0.05)
     return shape.BoundingBox()

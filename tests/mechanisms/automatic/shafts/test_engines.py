@@ -39,7 +39,7 @@ def along_of(made: Automatic) -> Along:
 
 @pytest.mark.slow
 def test_an_inline_four_is_built() -> None:
-    """That nothing touches is proven of mechanisms/inline_four."""
+    """The proof that nothing touches is that of mechanisms/inline_four."""
     made = plan("INLINE_FOUR")
     bodies = made.solids()
     names = {name: [solid.name for solid in solids] for name, solids in bodies.items()}
@@ -289,7 +289,7 @@ def test_all_liners_stay_clear_of_what_the_ring_of_knuckle_pins_sweeps(five: Alo
 
 @pytest.mark.slow
 def test_a_radial_engine_is_built() -> None:
-    """That nothing touches is proven of mechanisms/radial_five."""
+    """The proof that nothing touches is that of mechanisms/radial_five."""
     m = radial()
     made = Automatic(m, m.sweep(steps=90))
     bodies = made.solids()

@@ -1,5 +1,5 @@
 """A belt drive: the small pulley turns twice while the large one turns once.
-The belt runs as fast as both rims. A crossed belt turns the second pulley the other way; a chain does the same with
+The belt runs as fast as both rims; a crossed belt turns the second pulley the other way, and a chain does the same with
 rollers between the teeth of sprockets.
 """
 

@@ -1,6 +1,5 @@
-"""A beam of links with torsion springs between them, clamped at its left end.
-A weight is put on its tip and it swings. Its bending stiffness is that of a steel strip; finer links (a variant) bend
-ever more like the strip itself.
+"""A clamped beam of links with torsion springs between them swings under a weight on its tip.
+Its bending stiffness is that of a steel strip; finer links (a variant) bend ever more like the strip itself.
 """
 
 from dataclasses import dataclass

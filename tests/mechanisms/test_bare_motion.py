@@ -102,7 +102,7 @@ def test_what_is_not_driven_is_simulated(monkeypatch: pytest.MonkeyPatch) -> Non
 @pytest.mark.parametrize(
     ("constants", "words"),
     [
-        ({}, r"arm: 1 degree of freedom is not driven.*write DURATION = 2\.0 .*mechanism\.py, or add a driver"),
+        ({}, r"arm: 1 degree of freedom is not driven.*Write DURATION = 2\.0 .*mechanism\.py, or add a driver"),
         ({"DURATION": -1.0}, r"mechanism\.py: DURATION is -1\.0; it must be a number of seconds"),
         ({"DURATION": "2 s"}, r"DURATION is '2 s'"),
         ({"DURATION": 1.0, "STEPS": 1.5}, r"STEPS is 1\.5; it must be a whole number"),

@@ -66,7 +66,7 @@ class Bench:
         if not abs(abs(knee) - shank) < distance < abs(knee) + shank:
             raise ModelError(
                 f"hip thrust: at a flexion of {math.degrees(flexion):.4g} degrees the ankle is {distance:.3g} m from "
-                f"the edge of the pad, but trunk, thigh and shank reach from {abs(abs(knee) - shank):.3g} to "
+                f"the edge of the pad. Trunk, thigh and shank reach from {abs(abs(knee) - shank):.3g} to "
                 f"{abs(knee) + shank:.3g} m; change distance, bench or flexion"
             )
         cosine = (distance**2 + abs(knee) ** 2 - shank**2) / (2 * distance * abs(knee))

@@ -39,7 +39,7 @@ def crank_sizes(name: str, bore: float, stroke: float, rod: float) -> tuple[floa
     if rod <= throw:
         raise ModelError(
             f"engine '{name}': the rod of {1000 * rod:g} mm is no longer than the throw of {1000 * throw:g} mm (half "
-            f"the stroke), so the shaft cannot turn; rods have 1.5 to 2 strokes, here {1500 * stroke:g} mm or more"
+            f"the stroke), so the shaft cannot turn. Rods have 1.5 to 2 strokes, here {1500 * stroke:g} mm or more"
         )
     return bore, throw, rod
 

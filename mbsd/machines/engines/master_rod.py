@@ -96,7 +96,7 @@ def knuckles(
     radius = positive_number(f"engine '{name}': radius of the knuckle pins", radius, "m")
     if radius >= rod - throw:
         raise ModelError(
-            f"engine '{name}': the knuckle pins are {1000 * radius:g} mm from the crank pin, and rods of "
+            f"engine '{name}': the knuckle pins are {1000 * radius:g} mm from the crank pin. Rods of "
             f"{1000 * rod:g} mm on a throw of {1000 * throw:g} mm leave less than {1000 * (rod - throw):g} mm; make "
             "radius smaller or rod longer"
         )
@@ -159,8 +159,8 @@ def _of_throw(
         if not motion.turns:
             raise ModelError(
                 f"engine '{name}': the rod of cylinder {k + 1}, {1000 * motion.rod:g} mm from a knuckle pin "
-                f"{math.degrees(angle):g} degrees from the master rod, does not let the shaft go round; its bank is "
-                f"{math.degrees(banks[k]):g} degrees from the master's, so turn the knuckle pin there, or make radius "
+                f"{math.degrees(angle):g} degrees from the master rod, does not let the shaft go round. Its bank is "
+                f"{math.degrees(banks[k]):g} degrees from the master's: turn the knuckle pin there, or make radius "
                 "smaller"
             )
         # The motion counts the throw from where it points away from the master's head.

@@ -72,9 +72,8 @@ def _driven(
     can = serves(m, columns, result, prepare(m, float(grid[0]), float(grid[-1])))
     if way == "batch" and not can:
         raise ModelError(
-            f"{m.name}: tolerances: these machines cannot be swept all at once: that takes driven bodies and dyads, "
-            "lengths, places and play, and results x, y of bodies and traced points or theta of bodies; take "
-            "way='sweep'"
+            f"{m.name}: tolerances: these mechanisms cannot be swept all at once; take way='sweep'. All at once takes "
+            "driven bodies and dyads, lengths, positions and play, and results x, y or theta of bodies, x, y of traces"
         )
     pins = [d for d in dimensions if isinstance(d, LoosePlay)]
     if way == "sweep" or not can:

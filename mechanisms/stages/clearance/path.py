@@ -68,9 +68,9 @@ def what_shrinks(scale: Scale) -> str:
     """
     running = Fit().running
     return (
-        f"what a parts.py gives in millimetres, clearances too, shrinks with the machine: Fit(running="
-        f"{running / scale.ratio:.3g}) leaves {running:g} mm at {scale}, and fit_at_scale(pin) of mechanisms.automatic "
-        "chooses for any scale; without a parts.py pins and fits are chosen for the scale"
+        f"millimetres in a parts.py, clearances too, shrink with the mechanism. Fit(running="
+        f"{running / scale.ratio:.3g}) leaves {running:g} mm at {scale}; fit_at_scale(pin) of mechanisms.automatic "
+        "chooses for any scale. Without a parts.py, pins and fits are chosen for the scale"
     )
 
 

@@ -17,8 +17,8 @@ from shared.stage.errors import UserError
 VOLUME_TOLERANCE = 5e-3
 """Largest difference between the volume of the mesh and that of the solid, relative."""
 OF_ITSELF = (
-    "mbsd shaped this part by itself, so this is a fault of the program and not of your model: give the machine pins "
-    "of another diameter (automatic(m, pin=...) in a parts.py, which mbsd new writes), or change a length a little"
+    "mbsd shaped this part, so this is a fault of the program and not of your model. Use another diameter of pins "
+    "(automatic(m, pin=...) in a parts.py, which mbsd new writes), or change a length a little"
 )
 """The remedy where nobody has written the solid."""
 

@@ -105,8 +105,8 @@ def _natural(name: str, module: Any, m: Mechanism) -> Solution:
     if duration is None:
         freedoms = f"{counted(free, 'degree')} of freedom {'is' if free == 1 else 'are'}"
         raise UserError(
-            f"{name}: {freedoms} not driven, so forces move it and the motion is simulated, but how long is not said; "
-            f"write DURATION = 2.0 (seconds) beside build() in {_file(name)}, or add a driver, "
+            f"{name}: {freedoms} not driven, so the motion is simulated, but its duration is missing. "
+            f"Write DURATION = 2.0 (seconds) beside build() in {_file(name)}, or add a driver, "
             "such as m.drive_angle(...)"
         )
     if steps is not None:

@@ -157,7 +157,7 @@ def refuse_bad_laws(packed: Packed, start: float, end: float) -> None:
         if driver.kind.angular and farthest > LARGEST_ANGLE:
             raise ModelError(
                 f"{packed.name}: driver '{driver.name}' turns to {written(farthest, 'rad', 4)} by t = {end:.6g} s, "
-                "where numbers no longer tell one angle from the next; end the motion earlier, or let the law repeat"
+                "too large to resolve a position within the turn. End the motion earlier, or let the law repeat"
             )
         if driver.kind.constraints == ("distance",) and values[:, 0].min() <= 0:
             raise ModelError(

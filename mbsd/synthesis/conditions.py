@@ -65,8 +65,8 @@ def four_bar(m: Model, packed: Packed) -> list[tuple[int, int]]:
     loops = {body: [number for _, number in markers] for body, markers in places.items() if markers}
     if len(loops) != 4 or len(_revolutes(m)) != 4 or any(len(numbers) != 2 for numbers in loops.values()):
         raise ModelError(
-            f"{m.name}: fit_path: grashof=True needs a four-bar of four pins, and this is another mechanism; leave it "
-            "out, since a design counts only if its links close over the whole motion"
+            f"{m.name}: fit_path: grashof=True needs a four-bar of four pins, and this is another mechanism. Leave it "
+            "out: a design counts only if its links close over the whole motion"
         )
     return [(numbers[0], numbers[1]) for numbers in loops.values()]
 

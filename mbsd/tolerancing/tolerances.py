@@ -166,10 +166,10 @@ def _carried_out(
     slope = slopes(run, dimensions)
     if not np.isfinite([middle, *slope]).all():
         raise ModelError(
-            f"{task.owner}: tolerances: machines {_where(dimensions, middle, slope)} fail ({', '.join(run.failures)}); "
-            "the tolerances are too wide for derivatives, or the motion passes a dead centre: narrow them, or sweep a "
-            "part of the motion (duration=...). Where joints repeat others or gears mesh, only exact lengths close: "
-            "leave those out"
+            f"{task.owner}: tolerances: mechanisms {_where(dimensions, middle, slope)} fail "
+            f"({', '.join(run.failures)}). The tolerances are too wide for derivatives, or the motion passes a dead "
+            "centre. Narrow them, or sweep a part of the motion (duration=...). Where joints repeat others or gears "
+            "mesh, only exact lengths close: leave those out"
         )
     corner, corners_failed = None, 0
     if with_corners:

@@ -61,8 +61,8 @@ class Setting:
         self.seconds = self.map.seconds
         if self.seconds > LONGEST:
             raise UserError(
-                f"{film.motion.mechanism}: a showing of the film lasts {self.seconds:.0f} s, and sound is made of "
-                f"{LONGEST:.0f} s at most; give the shot fewer seconds_per_turn, or film it with SOUND=off"
+                f"{film.motion.mechanism}: a showing of the film lasts {self.seconds:.0f} s, and sound lasts "
+                f"{LONGEST:.0f} s at most. Give the shot fewer seconds_per_turn, or film it with SOUND=off"
             )
         self.samples = self.heard_samples = max(64, round(self.seconds * RATE))
         """Samples of the ring, and those of the film in it."""

@@ -324,7 +324,7 @@ def test_both_rows_of_an_event_may_share_its_time(path: Path) -> None:
     assert contract.read_motion(path) == ball
     row = ball.time.index(ball.events[0].time)
     assert ball.time[row] == ball.time[row + 1]
-    with pytest.raises(UserError, match=rf"time\[{row + 1}\] = .* no event has that time; only right before and after"):
+    with pytest.raises(UserError, match=rf"time\[{row + 1}\] = .* no event has that time. Only right before and after"):
         contract.write_motion(path, msgspec.structs.replace(ball, events=[]))
     leaping = list(ball.bodies["ball"].y)
     leaping[row] += 0.01

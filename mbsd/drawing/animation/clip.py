@@ -67,7 +67,7 @@ def clip_of(sol: Solution, rate: float | None, fps: float) -> Clip:
     if wanted > MOST:
         raise ModelError(
             f"{m.name}: {span:.4g} s at a rate of {rate:g} and {fps:g} pictures a second are {wanted:.0f} pictures; "
-            f"an animation has {MOST} at most: give a higher rate=, a lower fps=, or a shorter solution"
+            f"an animation has {MOST} at most. Give a higher rate=, a lower fps=, or a shorter solution"
         )
     if wanted < 1.0:
         raise ModelError(

@@ -283,7 +283,7 @@ def _places(plan: Layout, name: str, spacing: float, bank_offset: float | None, 
             most = room / max(0.5 * (len(groups[before]) + len(groups[after])) - 1.0, 0.5)
             raise ModelError(
                 f"engine '{name}': with a bank_offset of {1000 * apart:.4g} mm rod {first + 1} does not stand before "
-                f"rod {second + 1} of the next throw, {room:.4g} mm along the shaft; make it less than {most:.4g} mm"
+                f"rod {second + 1} of the next throw, {room:.4g} mm along the shaft. Make it less than {most:.4g} mm"
             )
     return z
 

@@ -93,8 +93,8 @@ def piston_harmonics(ratio: float, count: int = 8, offset: float = 0.0) -> np.nd
     reach = ratio * (1.0 + abs(offset))
     if not (ratio >= 0.0 and reach <= LONGEST):
         raise ModelError(
-            f"engine: the crank radius is {ratio:g} of the rod's length and the offset {offset:g} of the radius; "
-            f"radius and offset together must stay below {LONGEST:g} of the rod, so take a longer one"
+            f"engine: the crank radius is {ratio:g} of the rod's length and the offset {offset:g} of the radius. "
+            f"Together they must stay below {LONGEST:g} of the rod: use a longer rod"
         )
     phi = np.linspace(0.0, 2 * math.pi, SAMPLES, endpoint=False)
     # sqrt(1 - s^2) - 1 without the cancellation that small ratios would suffer from.

@@ -169,8 +169,8 @@ def _base(name: str, laws: Mapping[str, Lift], bore: float, given: float | None)
         return max(ROUND * need, LEAST * bore)
     if given <= need:
         raise ModelError(
-            f"engine '{name}': cams with a base_radius of {1000 * given:.4g} mm would be undercut, because a flat "
-            f"tappet asks here for more than {1000 * need:.4g} mm; make it larger, the lift less or the ramp longer"
+            f"engine '{name}': cams with a base_radius of {1000 * given:.4g} mm would be undercut: a flat tappet "
+            f"needs more than {1000 * need:.4g} mm here. Make it larger, the lift less or the ramp longer"
         )
     return given
 

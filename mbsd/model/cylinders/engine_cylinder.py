@@ -222,7 +222,7 @@ def cylinder_of(force: Force, joints: Sequence[Joint]) -> EngineCylinder:
             raise ModelError(
                 f"{what}: fires_at is {math.degrees(fires_at):.6g} degrees, but its piston is at the top dead centre "
                 f"with the crank at {math.degrees(dead):.6g} or {math.degrees(dead + TURN):.6g} degrees (radians in "
-                "the model); correct it, or leave it out"
+                "the model). Correct it, or leave it out"
             )
     else:
         motion = given_motion(what, p["stroke"], p["rod"], p["offset"], sense)

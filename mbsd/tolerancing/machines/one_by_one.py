@@ -151,8 +151,8 @@ class Simulated:
         for column in columns:
             if column.kind in ("bore", "reaction"):
                 raise ModelError(
-                    f"{m.name}: tolerances: the play of '{column.name}' cannot stray in a simulation; drivers that "
-                    "give the motion are swept, and the clearance of a clearance_joint is a number that may stray"
+                    f"{m.name}: tolerances: the play of '{column.name}' cannot stray in a simulation. Give the motion "
+                    "by drivers and sweep it, or vary the clearance of a clearance_joint"
                 )
             if column.kind == "place" and column.name in m.traces and column.name in m.joints:
                 raise ModelError(

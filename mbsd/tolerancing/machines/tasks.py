@@ -173,7 +173,7 @@ def _itself(owner: str, given: Any) -> Any:
     """Return the result itself. Raises ModelError for a mechanism."""
     if isinstance(given, Model):
         raise ModelError(
-            f"{owner}: tolerances: it gives a mechanism, and result= is missing; give a measure of mbsd.measures, such "
+            f"{owner}: tolerances: it gives a mechanism, and result= is missing. Give a measure of mbsd.measures, such "
             "as largest('P.y'), or a function of the mechanism that gives a number"
         )
     return given

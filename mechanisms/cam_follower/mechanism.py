@@ -18,7 +18,7 @@ VARIANTS = {
     "floating": {"follower": "valve", "speed": 210.0, "DURATION": 0.09},
 }
 RETAINER = (0.034, 0.105)
-"""Where the springs push on the valve: aside of its axis, and over the roller (m)."""
+"""Place where the springs push on the valve: aside of its axis, and over the roller (m)."""
 SPRING = 0.065
 """Length of a spring while the valve is closed (m)."""
 

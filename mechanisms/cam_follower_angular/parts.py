@@ -16,11 +16,11 @@ from shared.shapes.units import mm
 from shared.shapes.workpieces import prism
 
 SCALE = (9.0, 30.0)
-"""Where the scale begins beyond the tip's eye, and its width (mm)."""
+"""Start of the scale beyond the tip's eye, and its width (mm)."""
 BEYOND, STEP = 5, 2
 """Degrees beyond the swing, and from stroke to stroke."""
 POINTER = (2.0, 3.5)
-"""How near the arm comes to the scale, and half the arm's width (mm)."""
+"""Distance between the arm and the scale, and half the arm's width (mm)."""
 
 
 def parts(p: Params) -> Bodies:

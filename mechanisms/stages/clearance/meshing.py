@@ -133,7 +133,7 @@ class Gears:
 
 
 type Meshes = dict[frozenset[str], list[Gears]]
-"""By pair of bodies."""
+"""Gear pairs by pair of bodies."""
 
 
 def meshes(motion: Motion, pieces: list[MeshPiece]) -> Meshes:
@@ -240,7 +240,7 @@ class Band:
     piece: MeshPiece
     path: BodyPath
     axes: dict[str, tuple[np.ndarray, np.ndarray]]
-    """By body of a pulley: the pulley's centre in the band's frame and in the body's (mm)."""
+    """Centres by body of a pulley: in the band's frame and in the body's (mm)."""
     own: frozenset[tuple[str, str]]
     """Body and name of the pieces that hold the belt: its pulleys, which it touches."""
 

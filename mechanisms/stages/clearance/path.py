@@ -245,7 +245,7 @@ def _largest(control: np.ndarray, width: np.ndarray, order: int) -> np.ndarray:
 # Axes about which two bodies turn against each other, however they move.
 
 type Axes = dict[frozenset[str], dict[str, np.ndarray]]
-"""By pair of bodies: the axis of their joint, as a point (mm) in the frame of either."""
+"""Axes by pair of bodies: the axis of their joint, as a point (mm) in the frame of either."""
 
 
 def axes_of(motion: Motion, parts: Parts, where: Mapping[str, BodyPath]) -> Axes:

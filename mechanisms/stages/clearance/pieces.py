@@ -77,7 +77,7 @@ class Tree:
             self.radius[nodes] = np.fmax.reduce(away, axis=1)
             self.low[nodes], self.high[nodes] = low[:, 2], high[:, 2]
         self.reach = np.hypot(*self.centre.T) + self.radius
-        """By node: how far its facets reach from the origin (mm)."""
+        """Reach of the facets of each node from the origin (mm)."""
         self.axis = _axis_of_walls(walls)
         """The unit direction of the boxes' first side, x + i y; the second one is across it."""
         c, s = self.axis.real, self.axis.imag

@@ -272,7 +272,7 @@ class Sweep:
 RESOLUTION = 0.005
 """The proven gap is at most this (mm) below one that was measured, apart from the error between samples."""
 FARTHEST_OFF = 1.0
-"""Where the motion may be farther off than this between two samples (mm), parts must be this much farther apart."""
+"""Doubt of the motion between two samples (mm) beyond which parts must be this much farther apart."""
 BATCH = 20_000
 """Candidates looked at in one go, those of the least bounds first."""
 MOST = 30_000_000

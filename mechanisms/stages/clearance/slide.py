@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from shared.contract import Motion
 
 ROUNDING = 1e-3
-"""How far (mm) outlines may be off, since their corners are rounded."""
+"""Error (mm) of outlines, since their corners are rounded."""
 STRAIGHT = 1e-4
 """A slide may leave its line by so much (mm), or turn by so much per mm of reach."""
 
 SLICES = 24
-"""In which what slides is cut, where it is not proven as a whole."""
+"""Number of slices of the slider, where it is not proven as a whole."""
 BESIDE = (1.0, 0.3, 0.1)
 """Parts of the reach: so far ahead and behind of what slides the other piece is looked at."""
 
@@ -45,7 +45,7 @@ class Slide:
 
 
 type Slides = dict[frozenset[str], Slide]
-"""By pair of bodies."""
+"""Lines by pair of bodies."""
 
 
 def slides_of(motion: Motion, where: Mapping[str, BodyPath]) -> Slides:

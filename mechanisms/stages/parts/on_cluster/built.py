@@ -158,7 +158,7 @@ class Order(msgspec.Struct, frozen=True, kw_only=True):
 
     name: str
     files: dict[str, str]
-    """By name as inputs have it, the hash of the content of each of the authors' files."""
+    """Hashes of the content of the authors' files, by name as inputs have it."""
     program: dict[str, str]
     """Versions and sources of who asks, as ``identity`` gives them."""
     folder: str = ""

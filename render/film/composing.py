@@ -116,7 +116,7 @@ EDGE = 0.046
 TITLE, NUMBER, RATE, LEGEND = 1 / 16, 1 / 23, 1 / 27, 1 / 25
 """Heights of letters."""
 LINE = 1.4
-"""From one line to the next, in heights of letters."""
+"""Distance from one line to the next, in heights of letters."""
 SMALLER = 0.72
 """To this part letters shrink where a line is too wide, before it is broken into two."""
 LEAST = 0.3

@@ -34,7 +34,7 @@ from shared.contract.shot import Names, Shot, refuse_unknown
 
 Array = NDArray[np.float64]
 MANY = 20_000
-"""About so many points of what moves are looked for under words."""
+"""Number of points of moving things that are looked for under words, about."""
 LOOKED = 60
 """Frames in which springs and ropes are looked at for the camera."""
 

@@ -194,7 +194,7 @@ def trail_heights(motion: Motion, parts: Parts, trails: Iterable[Trail]) -> dict
 
 
 DIRECTIONS = 72
-"""In which a stud may stand beside a pin."""
+"""Directions in which a stud may stand beside a pin."""
 PASSING = 24
 """Moments at which is looked what passes over a pin."""
 

@@ -22,7 +22,7 @@ from shared.stage.files import file_hash
 COLOURED, KEPT = 0.05, 0.06
 """Difference of linear RGB from which on a surface is coloured, and the part of its own colour that it keeps."""
 TINT, PANE = 0.6, 0.06
-"""How much of its colour a transparent piece keeps, and its roughness."""
+"""Part of its colour that a transparent piece keeps, and its roughness."""
 GREY, DARKEST = 0.9, 0.14
 """Lightness of a coloured surface beside arrows, as a part of its own, and the least."""
 
@@ -124,7 +124,7 @@ def _chosen(mechanism: str, shot: Shot, body: str, name: str, piece: Piece) -> S
 SAME = 0.03
 """Pieces whose middles are nearer than this part of the height of the stack are of one layer."""
 STEP = 0.085
-"""From one layer to the next, as a part of the machine's size, ..."""
+"""Distance from one layer to the next, as a part of the machine's size, ..."""
 MOST = 0.6
 """... and all of them together."""
 
@@ -135,7 +135,7 @@ class Lift(NamedTuple):
     body: str
     piece: str
     order: int
-    """When it is put together, from 0 on; pieces of one layer have the same."""
+    """Order in which it is put together, from 0 on; pieces of one layer have the same."""
     axis: Vector
     """Unit vector of the frame of ground along which it is lifted."""
     distance: float

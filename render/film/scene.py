@@ -186,9 +186,9 @@ class StudioSpec(msgspec.Struct, kw_only=True, frozen=True):
     floor: float
     azimuth: float
     reach: tuple[float, float] = (0.0, 0.0)
-    """How far everything reaches from the middle, to right and left and away, as the camera stands (m)."""
+    """Reach of everything from the middle, to right and left and away, as the camera stands (m)."""
     wall: float | None = None
-    """How far away, in the studio's axes, the wall is at which the machine hangs; null where it does not."""
+    """Distance, in the studio's axes, of the wall at which the machine hangs; null if it hangs at none."""
     up: Point = Z
 
 
@@ -220,6 +220,6 @@ class State(msgspec.Struct, kw_only=True, frozen=True):
     number: str = ""
     """The number that lives, beside the title."""
     lifts: dict[str, float] = {}
-    """By ``body/piece``: how far a piece is lifted along z (m); those that are not named are where they belong."""
+    """Lift along z (m) by ``body/piece``; pieces that are not named are where they belong."""
     hidden: Hidden = ""
     """Hidden objects: trails, or all but the solids (trails, tubes, labels)."""

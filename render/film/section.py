@@ -82,7 +82,7 @@ WAYS: dict[str, Normal] = {
     "above": (0.0, 1.0, 0.0),
     "below": (0.0, -1.0, 0.0),
 }
-"""From the machine's inside to where a side of a Section is, in the axes of the motion."""
+"""Direction from the machine's inside to a side of a Section, in the axes of the motion."""
 ASIDE = 32.0
 """Azimuth (degrees) from which on a face that looks to the side is seen well."""
 STILL = 1e-9

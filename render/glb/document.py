@@ -132,7 +132,7 @@ def material(surface: SurfaceSpec, name: str) -> dict[str, Any]:
 # Triangles of an STL as vertices with normals: round walls are smooth, edges that turn by more than SHARP are not.
 
 SHARP = np.radians(32.0)
-"""As in the film."""
+"""Angle as in the film."""
 FINE = 1e-3
 """Normals that differ by less are one."""
 PAIRS = 4_000_000

@@ -19,7 +19,7 @@ from shared.contract.quantity import angle_step, figures, labelled, prefixed, wr
 # Quantities of an axis: its words with the unit, its numbers with the prefix that they need, ticks of angles, cuts.
 
 TICKS = 5
-"""On an axis at most, about; of angles one more."""
+"""Number of ticks on an axis, about; of angles one more."""
 LETTER = 5.6
 """Points that a letter of an axis's words takes; words too long for a vertical axis have their unit below them."""
 PEAK, KEPT = 12.0, 3.0

@@ -169,7 +169,7 @@ DISTANCE = 15.0
 """Pixels between a point and its name."""
 DIRECTIONS = np.radians(np.arange(45, 405, 45))
 NEAR, FAR = (1.0, 2.0), (3.5, 5.0, 7.0, 9.0, 12.0, 16.0)
-"""How far names are away, in distances: as a rule, and where there is no room."""
+"""Distances of names, in steps: as a rule, and where there is no room."""
 CLASH, OUTSIDE = 1000.0, 500.0
 """Costs of a name over another, and over the frame's edge, beside which points of lines under a name count one each."""
 

@@ -55,7 +55,7 @@ class Desk:
     def __init__(self, setting: Setting) -> None:
         self.setting = setting
         self.struck: dict[str, list[tuple[str, Blows]]] = defaultdict(list)
-        """By source: which bodies were struck, and how."""
+        """Strikes by source: the bodies that were struck, and how."""
         self._modes: dict[str, Modes] = {}
         self._waves: dict[str, Array] = {}
         self._powers: dict[str, dict[int, Array]] = defaultdict(dict)

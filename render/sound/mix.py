@@ -96,7 +96,7 @@ CHUNK, BESIDE = 16_000, 192
 REACH = 12
 """ms by which the gain is down before and after a peak."""
 TRIES, ENOUGH = 4, 0.1
-"""Where a peak is pressed, energies tell the loudness roughly; so it is measured, and aimed at again (LU)."""
+"""Tolerance (LU): where a peak is pressed, energies tell the loudness roughly, so it is measured and aimed at again."""
 HALVINGS, NEAR = 24, 0.02
 """Most tries, and how near to the loudness is near enough (LU)."""
 MOST, LESS = 36.0, 12.0
@@ -194,7 +194,7 @@ DECAY, BEFORE = 0.3, 0.005
 WALLS = 10 ** (-12 / 20)
 """Size of what the walls give back, over that of the machine itself."""
 DULL = 4000.0
-"""Above this frequency walls give back less (Hz)."""
+"""Frequency (Hz) above which walls give back less."""
 STREAMS = 100
 """Number of the first of its streams of chance."""
 

@@ -106,7 +106,7 @@ class Modes:
     mass: float
     """kg"""
     size: float
-    """About its largest extent (m)."""
+    """Largest extent (m), about."""
     matter: Matter
 
     def response(self, count: int, rate: float) -> Array:

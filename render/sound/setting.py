@@ -30,7 +30,7 @@ RATE = 48_000
 CONTROL = 1000
 """Values a second of whatever changes more slowly than a wave: levels, places, speeds."""
 WIDEST = 0.8
-"""How far to a side what is at the edge is heard, 0 .. 1."""
+"""Side at which things at the edge are heard, 0 .. 1."""
 LONGEST = 300.0
 """Film seconds of a showing that has a sound: all of its waves are in memory at once."""
 FADE = 0.012

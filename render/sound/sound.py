@@ -51,7 +51,7 @@ def stems_of(setting: Setting) -> dict[str, Spectrum]:
 # The sound of machines beside each other: each where its picture is, and as loud beside the other as it is.
 
 STREAMS = 100
-"""From the streams of chance of a machine to those of the next: equal noises would be heard as one in the middle."""
+"""Distance of the streams of chance of two machines: equal noises would be heard as one in the middle."""
 
 
 class Heard(NamedTuple):
@@ -60,7 +60,7 @@ class Heard(NamedTuple):
     film: Film
     time_map: TimeMap
     within: tuple[float, float]
-    """Where its picture begins and ends in the whole one, -1 at the left edge, 1 at the right."""
+    """Start and end of its picture in the whole one, -1 at the left edge, 1 at the right."""
 
 
 def sound_of_all(machines: Sequence[Heard]) -> Array:

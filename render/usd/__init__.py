@@ -21,7 +21,7 @@ from shared.stage.paths import Out
 from shared.stage.stages import Stage, key_of
 
 FORMATS = {"usd": ".usdc", "usdz": ".usdz"}
-"""By name: the ending of the file."""
+"""Endings of the file by name."""
 FIRST_TIME = struct.pack("<HH", 0, 0x21)
 """Midnight, and 1 January 1980, as ZIP has them."""
 

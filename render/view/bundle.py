@@ -25,7 +25,7 @@ from shared.stage.paths import cache_roots
 
 PAGE = Path(__file__).parent / "page"
 CARRIERS = "drawing/carriers.js"
-"""Where strokes of a skeleton are at a moment: a script of mbsd, which the page imports as "carriers"."""
+"""Script of mbsd that gives the strokes of a skeleton at a moment; the page imports it as "carriers"."""
 LOCKED = ("package.json", "package-lock.json", ".npmrc")
 LICENSED = {"three": "three.js", "uplot": "µPlot"}
 """Libraries in the bundle, by folder in node_modules."""

@@ -58,11 +58,11 @@ class Over(msgspec.Struct, kw_only=True, frozen=True):
     """The overlay of a picture: words, strip and leaders; Blender draws none of it."""
 
     title: float = 0.0
-    """How far the title is there, 0 .. 1, over a picture that is dark and out of focus."""
+    """Visibility of the title, 0 .. 1, over a picture that is dark and out of focus."""
     focus: float = 0.0
-    """How far that picture has become sharp."""
+    """Sharpness of that picture."""
     ending: float = 0.0
-    """How far the words of the end are there."""
+    """Visibility of the words of the end."""
     caption: str = ""
     caption_shown: float = 0.0
     rate: str = ""
@@ -74,7 +74,7 @@ class Over(msgspec.Struct, kw_only=True, frozen=True):
     notes: tuple[Note, ...] = ()
     notes_shown: float = 0.0
     dark: float = 0.0
-    """How far the picture is faded to the dark."""
+    """Fading of the picture to the dark."""
 
 
 @dataclass(frozen=True)
@@ -156,10 +156,10 @@ class Reason:
     name: str
     """Name of the element: a contact, a follower, an event, a driver or force, a joint, a point."""
     amount: str = ""
-    """How much, with its unit."""
+    """Amount, with its unit."""
     joint: str = ""
     """The joint that carries most at that time, if joints carry anything ..."""
     force: str = ""
     """... and how much."""
     words: tuple[str, ...] = field(default=())
-    """By which an author may ask for it."""
+    """Names by which an author may ask for it."""

@@ -21,7 +21,7 @@ from shared.stage.errors import UserError, did_you_mean
 BUDGET = 2.2
 """Pictures of a story beside those of the loop film; starting Blender twice takes the rest up to 2.5."""
 WAYS = ((True, 1.0), (False, 1.0), (False, 0.75), (False, 0.55), (False, 0.4), (False, 0.25), (False, 0.12))
-"""If the camera turns while the machine is shown, and the part of the seconds of moves: the first that fits."""
+"""Turning of the camera while the machine is shown, and the part of the seconds of moves; the first pair that fits."""
 ARROWED = 2.6
 """Cost of a picture with arrows, which are rendered apart, in pictures without."""
 TWOS = ("draft", "preview")
@@ -105,7 +105,7 @@ SHOTS: dict[str, Callable[[Scenery], Shot | None]] = {
     "reason": reason,
     "last": last,
 }
-"""By the names that a shot.py gives; the title needs what follows it."""
+"""Shots by the names that a shot.py gives; the title needs what follows it."""
 
 
 def _wished_first(mechanism: str, event: str | None, reasons: Sequence[Reason]) -> list[Reason]:

@@ -79,7 +79,7 @@ TABLE: dict[str, dict[str, str]] = {
         "difference": "Hier unterscheidet sich {curve} am meisten: {first} ({a}), {second} ({b}).",
     },
 }
-"""By language, then by what is said; every language says the same things with the same names in braces."""
+"""Words by language, then by subject; every language says the same things with the same names in braces."""
 SAME, ABOUT = 0.05, 0.2
 """Rates that differ from real time by less are real time, and about real time."""
 

@@ -41,7 +41,7 @@ class Site:
     outer: str
     direction: float
     base: float
-    """On which the stud stands."""
+    """Height on which the stud stands (m)."""
     hub: float
     """Top of the pin."""
     over: float
@@ -58,7 +58,7 @@ class Spiral:
     at: tuple[float, float, float]
     """x, y in the outer body's frame, and the stud's direction there."""
     turns: float
-    """Where the inner body's angle against the outer is 0."""
+    """Turns where the inner body's angle against the outer is 0."""
     points: int
     size: float
     wire: float

@@ -20,7 +20,7 @@ from shared.contract.quantity import labelled
 # Pages on which several motions of one mechanism lie over each other, a colour each.
 
 PANELS = 9
-"""On one page; of more, those in which the motions differ most."""
+"""Number of panels on one page; of more, those in which the motions differ most."""
 STILL = 1e-9
 """m or rad: what varies less stands still."""
 WIDE = 3.4

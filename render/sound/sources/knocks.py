@@ -23,7 +23,7 @@ NAME = "knocks"
 CLEARANCE = 5e-4
 """Clearance of a joint, as a part of the size of its body."""
 LONG = 0.0006
-"""How long a knock lasts (s)."""
+"""Duration of a knock (s)."""
 NEAR = 0.25
 """A force passes zero where it is below this part of its largest, and ends up the other way."""
 SUDDEN = 8.0

@@ -29,7 +29,7 @@ SHARE = 0.15
 LIGHT = 0.02
 """Load of teeth that transmit none, as a part of the weight of the lighter wheel."""
 LONG = 0.0003
-"""How long the stroke of a tooth lasts (s)."""
+"""Duration of the stroke of a tooth (s)."""
 WEIGHTS = tuple(1 / k**2 for k in range(1, 7))
 MOST = 60_000
 """Strokes of one pair in a showing; of more the tone alone is heard."""

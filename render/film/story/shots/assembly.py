@@ -21,7 +21,7 @@ from shared.contract.quantity import written
 MOST_LEADERS = 8
 """Bodies that are named: of more, the heaviest."""
 ROW = 0.085
-"""From one name to the next at least, in the picture's shorter side."""
+"""Least distance from one name to the next, in the picture's shorter side."""
 
 
 def leaders(scenery: Scenery, camera: CameraPose) -> tuple[Leader, ...]:

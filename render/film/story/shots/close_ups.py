@@ -28,7 +28,7 @@ LENS, WIDE = 90.0, 0.36
 SLOWER = 0.4
 """The rate beside that of the loop."""
 FOLLOWED = 0.85
-"""How much of the joint's way the camera goes."""
+"""Part of the joint's way that the camera goes."""
 LYING, STANDING = ((-34.0, 34.0), (14.0, 44.0)), ((-40.0, 16.0), (6.0, 26.0))
 """Azimuth and elevation (degrees) at the start and at the end of the move."""
 

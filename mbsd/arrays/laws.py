@@ -73,7 +73,7 @@ _NONE = pack_laws(())
 LAW_STEP = 1e-6
 """Part of its size by which a law's pieces disagree where it jumps."""
 BESIDE = 1e-12
-"""How far (of the span) a driven motion is evaluated from a jump, so that its author's functions are clear of it."""
+"""Distance (of the span) from a jump at which a driven motion is evaluated, clear of its author's functions."""
 
 
 def disagreeing(own: np.ndarray, order: int, part: float, over: float = 0.0) -> list[float]:

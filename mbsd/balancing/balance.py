@@ -69,7 +69,7 @@ class Balance(Suggesting):
     before: Mapping[str, float]
     after: Mapping[str, float]
     series: Mapping[str, np.ndarray]
-    """By quantity (T,) or (T, 2), with what was found."""
+    """Quantities (T,) or (T, 2) by name, with the weights and shafts."""
     mechanism: Any
 
     def apply(self) -> None:

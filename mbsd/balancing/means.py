@@ -19,7 +19,7 @@ class Counterweight(Suggesting):
     """
 
     about: Marker
-    """On the body that carries it, such as the pin on which that turns."""
+    """Place on the body that carries it, such as the pin on which that turns."""
     radius: float
     """Distance from the marker (m)."""
     largest: float = math.inf

@@ -20,4 +20,4 @@ STIFFNESS, DAMPER, FREE = 0, 1, 2
 FRICTION_JOINTS = ("revolute", "prismatic", "pin_in_slot")
 """Joints that can have friction, in the order of their shapes: see mbsd/equations/joint_friction.py."""
 MOST_STATES = 2
-"""How many states a force may carry."""
+"""Largest number of states that a force may carry."""

@@ -17,7 +17,7 @@ from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
 from mbsd.compiling.kernel_arguments import refuse_others
 
 LINKED = "linked"
-"""How a library is kept of which there is no machine code."""
+"""Mark of a library of which there is no machine code."""
 
 
 @dataclass(frozen=True)

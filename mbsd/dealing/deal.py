@@ -30,7 +30,7 @@ SOON = 2.0
 WAIT = 60.0
 """Seconds without a worker after which it is given up."""
 ATTEMPTS = 3
-"""On workers, after which an order itself may be at fault."""
+"""Number of workers after whose failure an order itself may be at fault."""
 DEATHS = 4
 """Workers that went while they had an order alone, after which it counts as what ends them; seen to end by it, two."""
 

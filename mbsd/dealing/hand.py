@@ -39,7 +39,7 @@ class Hand:
     """Groups that it does at a time."""
     fit: bool = False
     aside: str = ""
-    """Why it is left out."""
+    """Reason why it is left out."""
     stalled: bool = False
     each: float = math.inf
     """Seconds an order; infinite as long as it is not known."""
@@ -49,7 +49,7 @@ class Hand:
     failures: int = 0
     resting: float = 0.0
     began: float = 0.0
-    """When it got at its first group."""
+    """Time at which it began its first group."""
     made: int = 0
     tasks: int = 0
     """Tasks of the worker at the last look, those of other coordinators included."""

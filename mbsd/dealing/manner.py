@@ -29,7 +29,7 @@ class Kind(NamedTuple):
     needed: Mapping[str, Callable[[], bytes]] = MappingProxyType({})
     """Contents that a worker may ask for, by name."""
     salt: str = ""
-    """So that not all deals begin with the same worker."""
+    """Text that keeps all deals from beginning with the same worker."""
 
 
 @dataclass(frozen=True)

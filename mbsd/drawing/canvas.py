@@ -182,7 +182,7 @@ class Canvas:
 
 DIRECTIONS = 16
 DISTANCES = (0.0, 0.5, 1.1, 1.9, 3.0, 4.5)
-"""Beyond the clearance, in heights of the text."""
+"""Distances beyond the clearance, in heights of the text."""
 MARGIN = 2.0
 """Points kept free around a name."""
 

@@ -44,7 +44,7 @@ INKS: Mapping[str, str] = {
     "gold": "#8a6d00",
     "silver": "#66717b",
 }
-"""By words; shared/contract/materials.py has the same for its materials."""
+"""Colours by words; shared/contract/materials.py has the same for its materials."""
 DRIVEN = "orange"
 ON_GROUND = ("blue", "red", "green", "violet")
 BETWEEN = ("silver", "gold")

@@ -26,7 +26,7 @@ from mbsd.results.views import Mobility
 MOST_NODES = 600
 """Bodies, joints and drivers that one diagram can show."""
 EDGE = 74.0
-"""From a body to a joint (px)."""
+"""Distance from a body to a joint (px)."""
 BODY_HEIGHT, JOINT = 40.0, 15.0
 MARGIN, HEADING = 26.0, 58.0
 FONT = "DejaVu Sans, Verdana, sans-serif"

@@ -35,7 +35,7 @@ class Prepared:
     factors: Factors
     mobility: Mobility
     groups: Groups | None
-    """Where the mechanism falls apart into groups and blocks; else Newton-Raphson solves it as a whole."""
+    """Groups and blocks of the mechanism, if it has any; else Newton-Raphson solves it as a whole."""
     blocks: Blocks
     """Blocks that no closed form covers."""
     proved: bool = False

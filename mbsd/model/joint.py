@@ -86,11 +86,11 @@ class JointKind(ByName):
     units: tuple[str, str] = ("N", "N m")
     """Units of a driver's effort and, unused for joints, of its value."""
     numbers: Callable[[Mapping[str, Any]], Sequence[Sequence[float] | np.ndarray]] | None = None
-    """From a joint's params: the numbers of each special constraint, in their order."""
+    """Function of a joint's params: the numbers of each special constraint, in their order."""
     problem: Callable[[Mapping[str, Any], float, float], str | None] | None = None
-    """From params and the place (x, y) of marker j against marker i at the start: why this joint cannot be."""
+    """Function of params and the place (x, y) of marker j against marker i at the start: why this joint cannot be."""
     kept: Callable[[Mapping[str, Any], Any, Any], Any] | None = None
-    """From params and places (x, y), arrays of them too: a length (m) that must stay for this joint to be."""
+    """Function of params and places (x, y), arrays of them too: a length (m) that must stay for this joint to be."""
     lengths: tuple[str, ...] = ()
     """Params that are lengths (m), or places of a curve, and say how large the mechanism is."""
     touching: str = ""

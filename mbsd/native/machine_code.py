@@ -46,7 +46,7 @@ class MachineCode:
     """
 
     names: dict[str, str] = field(default_factory=dict)
-    """By the name outside, the name inside."""
+    """Names inside by the name outside."""
     libraries: list[Any] = field(default_factory=list)
 
     def add_entry(self, name: str, function: Any, kinds: Sequence[Any]) -> None:

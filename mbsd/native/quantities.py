@@ -19,7 +19,7 @@ from mbsd.model.mechanism import Model
 from mbsd.native.equations import NativeEquations
 
 MEMORY, FRAME, JOINT, DRIVER, ENERGY, MASS, INERTIA, GRAVITY, RATE, LOAD = range(10)
-"""How a number is got and set: where it stands in the memory (LOAD: and forces change with it), or by its index."""
+"""Access to a number: where it stands in the memory (LOAD: and forces change with it), or its index."""
 KINDS = ("number", "body", "joint", "driver", "energy", "mass", "inertia", "gravity", "driver", "force")
 """Prefixes of a name that would otherwise stand for two things."""
 STATE, INPUT, PARAMETER, OUTPUT = "state", "input", "parameter", "output"

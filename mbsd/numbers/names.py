@@ -61,7 +61,7 @@ class Number:
     built: Callable[[float], Model] | None = None
     """The model with another value, of a number that a function of the author builds models from."""
     within: Within | None = None
-    """Where it stands, if it is a part of what ``change`` takes."""
+    """Its place, if it is a part of what ``change`` takes."""
     marker: Marker | None = None
     """The marker whose coordinate or angle it is."""
     is_place: bool = False
@@ -69,7 +69,7 @@ class Number:
     vector: float = 0.0
     """Length of the vector that it is a component of (SI); 0 of others."""
     reach: float = 0.0
-    """How far apart the bounds are within which it varies; 0 where there are none."""
+    """Distance of the bounds within which it varies; 0 where there are none."""
 
 
 def numbers_named(m: Model, names: Sequence[str]) -> list[Number]:

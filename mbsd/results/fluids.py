@@ -149,7 +149,7 @@ class HydraulicView(ForceView):
     """Pa"""
     pressure_b: np.ndarray
     flow_a: np.ndarray
-    """From the valve into chamber A (m^3/s)."""
+    """Flow from the valve into chamber A (m^3/s)."""
     flow_b: np.ndarray
     leak: np.ndarray
     """Past the piston, from A to B (m^3/s)."""

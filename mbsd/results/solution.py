@@ -122,7 +122,7 @@ class Solution(Suggesting, Generic[AnyModel]):
     stats: Stats
     mobility: Mobility
     route: str = "integration"
-    """How positions were found: in closed form group by group, by Newton-Raphson, or by integration."""
+    """Method that found the positions: in closed form group by group, by Newton-Raphson, or by integration."""
     work: np.ndarray | None = None
     """(T,) of forces and drivers since the start (J), gravity left out, of a simulation."""
     changes: tuple[str, ...] = ()

@@ -39,7 +39,7 @@ class PathFit(Suggesting):
     mechanism: Any
     """The fitted Mechanism."""
     values: dict[str, Value]
-    """By name, the numbers that were varied: a length, or a place (x, y)."""
+    """Varied numbers by name: a length, or a place (x, y)."""
     distances: np.ndarray
     """(N,) of the points from the path; with times, from where the traced point is at its time."""
     path: np.ndarray

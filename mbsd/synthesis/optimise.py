@@ -36,10 +36,10 @@ class Optimum(Suggesting):
     mechanism: Any
     """The Mechanism with the best numbers."""
     values: dict[str, float]
-    """By name, the numbers that were varied."""
+    """Varied numbers by name."""
     objective: float
     conditions: dict[str, float]
-    """By name, what the conditions are of."""
+    """Conditions by name, with their values."""
     gradient: dict[str, float]
     """Slopes of the objective by each number at the end."""
     met: bool

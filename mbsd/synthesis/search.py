@@ -40,7 +40,7 @@ DESCENTS = 20
 ROUNDS = 8
 """At most."""
 AGREED, ALIKE = 3, 1e-3
-"""So many that end at costs no farther apart than this part are enough, and so many that come near nothing."""
+"""Number of starts that suffices if their costs agree to this part, or if none comes near the points."""
 STEPS, HALVED = 24, (5, 10)
 """Steps of the descents, and those at which the better half goes on."""
 DESCENDING = 0.3

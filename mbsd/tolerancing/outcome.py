@@ -64,16 +64,16 @@ class Tolerances(Suggesting):
     vertex_worst: tuple[float, float] | None
     """The same, of machines at the corners and in the middle of all tolerances; None where they were not solved."""
     corners_failed: int
-    """How many of the corners failed, so that there is no worst case there but the machine itself."""
+    """Number of corners that failed, so that there is no worst case there but the mechanism itself."""
     limits: Limits | None
     confidence: float
     failures: Mapping[str, int]
-    """How many machines failed for which reason."""
+    """Number of failed mechanisms by reason."""
     halving: Halving
     """Gain of halving each tolerance."""
     sobol: Sobol | None
     way: str
-    """How the machines were solved, and where pins with play lie."""
+    """Method by which the mechanisms were solved, and the place of pins with play."""
     name: str
     dimensions: tuple[Dimension, ...]
     slopes: np.ndarray

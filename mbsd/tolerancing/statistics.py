@@ -178,9 +178,9 @@ class Sobol:
     total: np.ndarray
     """(d,) total."""
     machines: int
-    """How many were evaluated."""
+    """Number of evaluated mechanisms."""
     failed: int
-    """How many of them failed; what needs one of these is left out."""
+    """Number of them that failed; results that need one of these are left out."""
 
 
 def linear_variances(slopes: np.ndarray, dimensions: Sequence[Dimension]) -> np.ndarray:

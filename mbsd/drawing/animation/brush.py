@@ -20,7 +20,7 @@ Colour = tuple[float, float, float, float]
 HALO = "#ffffff"
 """Round arrows, on light paper."""
 BEHIND = 0.72
-"""How far the second point of a head lies behind the first, in its length."""
+"""Distance of a head's second point behind the first, in its length."""
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ class Balance:
 
     kinetic: np.ndarray
     potential: np.ndarray
-    """From its least on."""
+    """Potential energy, counted from its least."""
     powers: dict[str, np.ndarray]
     """Powers of drivers and forces, by name; positive: given to the motion."""
     bodies: dict[str, np.ndarray]

@@ -19,7 +19,7 @@ from mbsd.model.mechanism import Model
 
 DIRECTIONS = 12
 DISTANCES = (0.0, 0.6, 1.4)
-"""Beyond the clearance, in heights of the word."""
+"""Distances beyond the clearance, in heights of the word."""
 MARGIN = 2.0
 """Pixels."""
 

@@ -91,7 +91,7 @@ def _smooth(t: np.ndarray, x: np.ndarray, v: np.ndarray, jumps: np.ndarray) -> t
 
 
 SECONDS = 0.35
-"""For which the ring is seen."""
+"""Time for which the ring is seen."""
 SMALLEST = 0.02
 """Fraction of the largest impulse: smaller ones are not shown."""
 MOST = 60

@@ -17,7 +17,7 @@ from mbsd.drawing.symbols.wheels import draw_disc
 from mbsd.model.joint import Joint
 
 BEYOND = 3.0
-"""How far a floor goes on beyond what touches it, in units."""
+"""Length of a floor beyond what touches it, in units."""
 ALIKE = 1e-9
 """Lines whose places and directions differ by less (m, rad) are one line."""
 

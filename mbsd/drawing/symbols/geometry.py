@@ -76,7 +76,7 @@ def free_side(directions: list[float]) -> np.ndarray:
 
 
 BESIDE = 1.4
-"""How far the line of a rack or a rolling disc goes on to both sides, in its radii."""
+"""Length of the line of a rack or a rolling disc to both sides, in its radii."""
 ROUND = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1)], float)
 
 

@@ -52,7 +52,7 @@ class Passage:
 
     way: Way
     time: float
-    """When it is passed (s), or would be if the motion began earlier or went on."""
+    """Time of the passage (s), or the time it would have if the motion began earlier or went on."""
     before: Assembly
     after: Assembly
     start: float

@@ -163,7 +163,7 @@ class GroupKind:
     follows: tuple[tuple[int, int, int], ...] = ()
     """Bodies that turn with another: 0 for A or 1 for B, column of the constant angle, column of the other body."""
     watched: int = 0
-    """How many of its bodies a motion watches, so that they turn little from pose to pose."""
+    """Number of its bodies that a motion watches, so that they turn little from pose to pose."""
 
 
 def line(x: np.ndarray, y: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:

@@ -208,7 +208,7 @@ def fixed_bodies(packed: Packed, known: Collection[int], left: Sequence[int], pa
 
 
 _FIXED: Kept[tuple[int, ...] | None] = Kept()
-"""By all that they depend on."""
+"""Parts by all that they depend on."""
 
 
 def _fixed(own: np.ndarray, unknown: Sequence[int], arms: Sequence[int]) -> tuple[int, ...] | None:

@@ -33,7 +33,7 @@ CLOSED = 1e-10
 """Largest residual of a closed pose, in sizes (m) and rad."""
 ATTEMPTS = 24
 MANY_ROWS = 100
-"""From here on the shortest step is found without singular values where rows are well apart."""
+"""Number of rows from which on the shortest step is found without singular values where rows are well apart."""
 WELL_CONDITIONED = 1e-4
 LONGEST_STEP = 0.5
 """Longest Gauss-Newton step, in sizes and rad."""

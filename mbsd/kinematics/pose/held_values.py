@@ -18,7 +18,7 @@ import numpy as np
 RANK_TOLERANCE = 1e-8
 """A row that adds less than this part of itself to the others repeats them."""
 SMALL = 4000
-"""Up to so many numbers of J, its rank is kept for the next call with the same J."""
+"""Number of entries of J up to which its rank is kept for the next call with the same J."""
 ALIGNED = 1e-12
 """Part of u across an axis below which it is that axis."""
 

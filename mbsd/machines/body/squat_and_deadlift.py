@@ -31,7 +31,7 @@ from mbsd.model.body import Body
 from mbsd.model.laws.formulas import polynomial
 
 SLOWER = Tempo(up=1.5)
-"""By default: the bar goes twice as far as in a hip thrust."""
+"""Default tempo: the bar goes twice as far as in a hip thrust."""
 ELBOWS_DOWN = 1
 """Side of the elbows of arms that hold a bar on the back; see :meth:`mbsd.machines.body.figure.Figure.arms`."""
 

@@ -95,7 +95,7 @@ INLINE_THROWS: dict[int, tuple[float, ...]] = {
     6: (0, 120, 240, 240, 120, 0),
     8: (0, 90, 270, 180, 180, 270, 90, 0),
 }
-"""By the number of throws: those that are built most."""
+"""Throws by their number: the layouts that are built most."""
 
 
 def inline(throws: Sequence[float]) -> Layout:
@@ -154,7 +154,7 @@ V_THROWS: dict[int, tuple[float, ...]] = {
     10: INLINE_THROWS[5],
     12: INLINE_THROWS[6],
 }
-"""By the number of cylinders: those that are built most."""
+"""Banks by the number of cylinders: the layouts that are built most."""
 V_ANGLES = {2: 90.0, 4: 90.0, 6: 60.0, 8: 90.0, 10: 72.0, 12: 60.0}
 BOXER_THROWS: dict[int, tuple[float, ...]] = {2: (0, 180), 4: (0, 180, 180, 0), 6: (0, 180, 120, 300, 240, 60)}
 NARROW = 15.0

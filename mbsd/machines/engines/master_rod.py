@@ -69,10 +69,10 @@ class Knuckle:
     radius: float
     """m"""
     angle: float
-    """From the master rod (rad)."""
+    """Angle from the master rod (rad)."""
     motion: ArticulatedMotion
     late: float
-    """How far the shaft turns from the top dead centre of the layout to that of the piston (rad)."""
+    """Turn of the shaft from the top dead centre of the layout to that of the piston (rad)."""
 
     def rod_starts(self, master: float, pin: complex, axis: float) -> float:
         """Return the rod's direction (rad) from the master rod's, the crank pin (m), the cylinder's axis."""

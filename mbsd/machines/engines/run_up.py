@@ -37,11 +37,11 @@ SAMPLES = 48
 MOST = 4_000_000
 """Rows."""
 SHIFT = 0.861
-"""How far the undamped peak is from resonance, times q^(-1/2), in parts of the speed there."""
+"""Distance of the undamped peak from resonance, times q^(-1/2), in parts of the speed there."""
 SHIFTS = 3.0
-"""How many of these the run goes past resonance."""
+"""Number of these distances by which the run goes past resonance."""
 LEAST = 0.3
-"""How far past resonance it goes at least, in parts of the speed there."""
+"""Least distance by which it goes past resonance, in parts of the speed there."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -37,7 +37,7 @@ dead centre, in bores.
 PULLEY = 0.42
 """Radius of the pulley on the crankshaft, in bores."""
 BEYOND, NEXT = 1.0, 0.36
-"""From the last cylinder to the first belt, and from a belt to the next, in bores."""
+"""Distance from the last cylinder to the first belt, and from a belt to the next, in bores."""
 ROUND = 1.15
 """The base circle, in the least that a flat tappet asks for."""
 LEAST = 0.2
@@ -150,9 +150,7 @@ def valve_train(
 
 
 SEAT, LENGTH = 0.78, 0.13
-"""Where the springs stand, over the wrist pin at the top dead centre, and how far below the tappet's face they push it,
-in bores.
-"""
+"""Height of the springs over the wrist pin at the top dead centre, and their depth below the tappet's face (bores)."""
 
 
 def _law(begin: float, end: float, lift: float) -> Lift:

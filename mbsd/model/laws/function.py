@@ -117,7 +117,7 @@ class Fitted(Function):
     first: float = 0.0
     last: float = 0.0
     jumps: tuple[float, ...] = ()
-    """Where f itself jumps."""
+    """Times at which f itself jumps."""
     missed: str | None = None
     """The part that could not be fitted, in words."""
 

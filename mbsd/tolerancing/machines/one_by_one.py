@@ -38,7 +38,7 @@ class Answers:
     values: np.ndarray
     """(n,), NaN where a machine failed."""
     failures: Counter[str] = field(default_factory=Counter)
-    """How many failed for which reason."""
+    """Number of failures by reason."""
 
 
 class Machines(Protocol):

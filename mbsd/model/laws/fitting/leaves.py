@@ -28,7 +28,7 @@ ROOTS = 16
 STUB = 0.25
 """A first piece shorter than this part of the usual ones is joined with its neighbour."""
 BESIDE = 1e-13
-"""How far (of the span) a law is evaluated from a break that its author gave."""
+"""Distance (of the span) from a break of its author at which a law is evaluated."""
 CLOSE = 64
 """Neighbouring numbers within which a law is not looked at."""
 

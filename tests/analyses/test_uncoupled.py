@@ -49,7 +49,7 @@ def test_each_has_its_own_rate(mass: float, stiffness: float) -> None:
     assert [mode.omega for mode in m.modes()] == pytest.approx(rates, rel=1e-6)
 
 
-def test_what_nothing_pulls_back_is_free_beside_it() -> None:
+def test_bodies_without_a_restoring_force_are_free_beside_it() -> None:
     m = two_bodies(1.0)
     m.change("wheel", com=(0.0, 0.0))
     free, swinging = m.modes()

@@ -239,7 +239,7 @@ def test_the_pressure_drop_of_a_flow_gives_this_flow(root: float, transition: fl
         ({"bulk_modulus": math.inf}, "bulk_modulus is inf"),
     ],
 )
-def test_what_no_cylinder_is_is_refused(more: dict[str, Any], said: str) -> None:
+def test_invalid_cylinders_are_refused(more: dict[str, Any], said: str) -> None:
     m = Mechanism("press", gravity=None)
     carriage = m.body("carriage", 10.0, inertia=1.0)
     m.prismatic("rail", m.ground.origin, carriage.origin)
@@ -269,6 +269,6 @@ def test_millimetres_and_litres_a_minute_are_told() -> None:
     assert not m.check()
 
 
-def test_what_looks_at_poses_alone_refuses_pressures() -> None:
+def test_analyses_of_poses_alone_refuse_pressures() -> None:
     with pytest.raises(ModelError, match=r"force 'ram' .* carries pressure_a and pressure_b"):
         press().equilibrium()

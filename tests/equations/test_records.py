@@ -123,7 +123,7 @@ def test_a_kernel_that_returns_one_is_refused() -> None:
         returned(example()[1])
 
 
-def test_what_python_calls_of_a_shared_kernel_is_compiled_when_python_calls_it() -> None:
+def test_the_python_face_of_a_shared_kernel_compiles_at_its_first_call() -> None:
     """Kernels call what has no wrapper for Python; the second call finds the first one's code."""
 
     @shared

@@ -88,7 +88,7 @@ def test_a_stated_duration_and_number_of_steps_count(monkeypatch: pytest.MonkeyP
     assert len(solution.t) == 11
 
 
-def test_what_is_not_driven_is_simulated(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_mechanisms_without_drivers_are_simulated(monkeypatch: pytest.MonkeyPatch) -> None:
     _Author(monkeypatch, _pendulum, DURATION=0.5)
     solution = bare_solution("arm")
     assert solution.t[-1] == 0.5
@@ -109,7 +109,7 @@ def test_what_is_not_driven_is_simulated(monkeypatch: pytest.MonkeyPatch) -> Non
         ({"DURATION": 1.0, "STEPS": True}, r"STEPS is True"),
     ],
 )
-def test_what_is_missing_or_no_number_is_told(
+def test_missing_and_invalid_constants_are_reported(
     monkeypatch: pytest.MonkeyPatch, constants: dict[str, Any], words: str
 ) -> None:
     _Author(monkeypatch, _pendulum, **constants)
@@ -192,7 +192,7 @@ def test_rows_lie_so_close_that_the_film_shows_the_motion_itself(monkeypatch: py
     assert 361 < len(solution.t) < 1000
 
 
-def test_what_is_smooth_gets_no_more_rows(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_smooth_motions_get_no_more_rows(monkeypatch: pytest.MonkeyPatch) -> None:
     _Author(monkeypatch, _pendulum, DURATION=1.0)
     assert len(bare_solution("arm").t) == 361
 
@@ -227,7 +227,7 @@ def test_a_mass_of_zero_is_massless_on_purpose() -> None:
     assert "rod" not in sentences[0]
 
 
-def test_of_many_masses_the_first_are_told() -> None:
+def test_the_first_of_many_masses_are_reported() -> None:
     m = Mechanism("many")
     for k in range(20):
         m.bar(f"bar{k}", 0.1)

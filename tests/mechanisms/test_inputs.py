@@ -183,7 +183,7 @@ def test_a_change_of_what_is_read_runs_the_stage_again_and_a_touch_does_not(
     assert not project.run()
 
 
-def test_what_the_run_itself_writes_does_not_count(project: Project) -> None:
+def test_files_that_the_run_writes_do_not_count(project: Project) -> None:
     project.shot(
         "import tempfile, os\n"
         "with tempfile.TemporaryDirectory() as folder:\n"

@@ -152,7 +152,7 @@ def test_parts_follow_from_what_parts_py_uses(
     assert not parts.run()
 
 
-def test_of_shot_py_its_mount_alone_counts(parts: Project) -> None:
+def test_only_the_mount_of_shot_py_counts(parts: Project) -> None:
     """Its imports and its files count only where parts.py has them too, which then finds them as new."""
     write_file("mechanisms/arm/parts.py", PARTS + CASES["a helper"][0])(parts)
     write_file(HELPER, "WIDTH = 8.0\n")(parts)

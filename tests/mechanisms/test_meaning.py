@@ -63,18 +63,18 @@ OTHER = {
 
 
 @pytest.mark.parametrize("change", SAME)
-def test_what_means_the_same_has_the_same_hash(change: str) -> None:
+def test_equal_meanings_have_equal_hashes(change: str) -> None:
     assert SAME[change][0] in SOURCE
     assert meaning(SOURCE.replace(*SAME[change]).encode()) == meaning(SOURCE.encode())
 
 
 @pytest.mark.parametrize("change", OTHER)
-def test_what_means_something_else_has_another_hash(change: str) -> None:
+def test_other_meanings_have_other_hashes(change: str) -> None:
     assert OTHER[change][0] in SOURCE
     assert meaning(SOURCE.replace(*OTHER[change]).encode()) != meaning(SOURCE.encode())
 
 
-def test_what_is_no_python_counts_by_its_bytes() -> None:
+def test_files_that_are_no_python_count_by_their_bytes() -> None:
     assert meaning(b"def (:") != meaning(b"def (: ")
     assert meaning(b"\xff\xfe\x00") != meaning(b"\xff\xfe\x01")
 
@@ -111,7 +111,7 @@ def test_a_comment_in_a_module_runs_no_stage(project: Project) -> None:
     ],
     ids=["a docstring", "its source", "its text"],
 )  # fmt: skip
-def test_what_a_file_says_counts_where_it_is_read(project: Project, shot: str, before: str, after: str) -> None:
+def test_docstrings_count_where_they_are_read(project: Project, shot: str, before: str, after: str) -> None:
     write_file(HELPER, before)(project)
     project.shot(shot)
     assert project.run()

@@ -119,7 +119,7 @@ def test_a_killed_worker_loses_no_parts_and_changes_none(
 
 
 @pytest.mark.parametrize("change", ["the disk has another file", "the worker refuses"])
-def test_what_a_worker_cannot_tell_is_made_here(
+def test_parts_that_a_worker_cannot_build_are_built_here(
     project: Project, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], out_root: Path, change: str
 ) -> None:
     assert project.run()
@@ -235,7 +235,7 @@ def test_files_of_the_mechanism_travel_and_what_they_import_and_no_others(folder
     assert set(collected("wheel")) == {"workshop:wheel.py", "workshop:lengths.py"} | LIBRARY
 
 
-def test_what_was_read_before_travels_if_it_lies_in_the_folder(folder: Path) -> None:
+def test_files_read_before_travel_if_they_lie_in_the_folder(folder: Path) -> None:
     read = ["workshop:photo.jpg", "workshop:gone.txt", "/etc/passwd", "shared/shot.py", "results:x"]
     assert set(collected("wheel", read)) - set(collected("wheel")) == {"workshop:photo.jpg"}
 
@@ -443,7 +443,7 @@ FALSE: dict[str, Callable[[WorkerParts], Any]] = {
 
 
 @pytest.mark.parametrize("kind", FALSE)
-def test_what_does_not_hold_together_is_refused(
+def test_inconsistent_files_are_refused(
     worker_parts: WorkerParts, kind: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(answer, "_refuse_other_solids", lambda *_: pytest.fail("nothing may be written"))

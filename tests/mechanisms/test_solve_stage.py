@@ -98,7 +98,7 @@ def _called(name: str) -> Mechanism:
         ),
     ],
 )
-def test_what_is_no_model_or_solution_is_told(
+def test_files_without_a_model_or_a_solution_are_reported(
     monkeypatch: pytest.MonkeyPatch, build: Any, motion: Any, words: str
 ) -> None:
     _Author(monkeypatch, build, motion)

@@ -118,7 +118,7 @@ REFUSED: dict[str, tuple[Any, str]] = {
 
 
 @pytest.mark.parametrize(("given", "words"), REFUSED.values(), ids=REFUSED)
-def test_what_is_no_variant_is_refused(project: Project, given: Any, words: str) -> None:
+def test_invalid_variants_are_refused(project: Project, given: Any, words: str) -> None:
     with pytest.raises(UserError, match=words):
         checked_variants("arm", SimpleNamespace(VARIANTS=given, Params=_Params))
 

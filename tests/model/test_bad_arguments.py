@@ -257,7 +257,7 @@ def _accepted() -> list[tuple[str, str, str]]:
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_what_is_odd_but_accepted_can_be_solved_or_is_refused_then() -> None:
+def test_odd_but_accepted_arguments_can_be_solved_or_are_refused_then() -> None:
     taken = _accepted()
     assert len(taken) > 200
     for k in np.random.default_rng(7).choice(len(taken), 25, replace=False):

@@ -70,7 +70,7 @@ def test_a_result_that_is_written_into_spoils_no_other() -> None:
     assert np.array_equal(m.sweep(steps=12).q, first)
 
 
-def test_what_does_not_close_is_not_tried_again_and_named_by_its_own_words(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_open_loop_is_not_tried_again_and_named_by_its_own_words(monkeypatch: pytest.MonkeyPatch) -> None:
     import mbsd.kinematics.pose.close as pose
 
     said = []

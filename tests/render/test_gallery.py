@@ -58,7 +58,7 @@ def plain(red: float) -> bytes:
     return buffer.getvalue()
 
 
-def test_of_many_posters_those_least_alike_are_on_the_strip() -> None:
+def test_the_strip_has_the_least_similar_posters() -> None:
     reds = [*range(20), 60, *(70 + 14 * k for k in range(12))]  # the first twenty are hardly to be told apart
     with Image.open(io.BytesIO(strip([plain(red) for red in reds]))) as sheet:
         assert sheet.size == (1280, 720)

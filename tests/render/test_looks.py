@@ -57,7 +57,7 @@ def test_a_look_has_light_or_is_drawn_and_its_page_follows_the_theme(name: str):
         ("wall", False, True, 0.2, "daylight"),
     ],
 )
-def test_what_files_say_chooses_the_look(mount: Kind, engine: bool, driven: bool, size: float, look: str):
+def test_facts_of_the_files_choose_the_look(mount: Kind, engine: bool, driven: bool, size: float, look: str):
     assert chosen(Family(mount, engine, driven, size)) == look
 
 

@@ -51,7 +51,7 @@ def test_a_row_has_the_numbers_of_what_was_done(capsys: pytest.CaptureFixture[st
 
 
 @pytest.mark.usefixtures("four_bar_files")
-def test_what_a_failed_run_left_is_not_told() -> None:
+def test_results_of_a_failed_run_are_left_out() -> None:
     assert facts.row_of("four_bar 2 failed") == ["four_bar", "2.0 s", "", "", "", "", "failed"]
 
 

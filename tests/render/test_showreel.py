@@ -160,7 +160,7 @@ def shown_at(path: Path) -> list[float]:
     return sorted(int(row[2]) / ticks for row in rows)
 
 
-def test_what_is_missing_or_damaged_is_named(out_root: Path) -> None:
+def test_missing_or_damaged_films_are_named(out_root: Path) -> None:
     with pytest.raises(UserError, match="there is no film of any mechanism at tiny; make film-belt-drive PRESET=tiny"):
         showreel.run(TINY)
     path = film(out_root, "four_bar", 20)

@@ -91,7 +91,7 @@ def test_the_stage_says_its_units_and_its_clock(out: Out) -> None:
 
 
 @pytest.mark.parametrize("gravity", [(0.0, 0.0), (0.0, -9.81), (3.0, 4.0)])
-def test_what_points_up_is_y(out_root: Path, gravity: tuple[float, float]) -> None:
+def test_the_upward_axis_is_y(out_root: Path, gravity: tuple[float, float]) -> None:
     mount = mounted(gravity)
     stage = opened(film_fixture.write(mount=mount))
     assert world_place(prims_of(stage)["ground"], 0.0, mount.up) == pytest.approx([0.0, 1.0, 0.0], abs=1e-12)

@@ -141,7 +141,7 @@ def _value_of(written: Any, place: tuple) -> Any:
     ],
     ids=["lists", "objects", "infinite", "digits", "twins", "empty"],
 )
-def test_what_is_no_model_is_told_with_its_file(text: str, says: str, tmp_path: Path) -> None:
+def test_files_without_a_model_are_named(text: str, says: str, tmp_path: Path) -> None:
     path = tmp_path / "model.json"
     path.write_text(text)
     with pytest.raises(ModelError, match=says) as told:

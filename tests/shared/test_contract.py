@@ -152,7 +152,7 @@ REFUSED: dict[str, tuple[Edit, str]] = {
 
 
 @pytest.mark.parametrize(("edit", "words"), REFUSED.values(), ids=REFUSED.keys())
-def test_what_does_not_hold_together_is_refused_with_file_and_field(path: Path, edit: Edit, words: str) -> None:
+def test_inconsistent_files_are_refused_with_file_and_field(path: Path, edit: Edit, words: str) -> None:
     document = json.loads(CONTENT)
     edit(document)
     path.write_text(json.dumps(document))

@@ -22,7 +22,7 @@ EVEN = (np.arange(200_000) + 0.5) / 200_000
         (Normal(1.0, sigmas=1.0, cut=True), 0.5395600628),  # of a normal distribution cut at one standard deviation
     ],
 )
-def test_what_is_drawn_has_the_standard_deviation(spread: Normal | Uniform | Triangular, sigma: float) -> None:
+def test_samples_have_the_standard_deviation(spread: Normal | Uniform | Triangular, sigma: float) -> None:
     drawn = spread.deviations(EVEN)
     assert spread.sigma == pytest.approx(sigma, rel=1e-6)
     assert drawn.std() == pytest.approx(sigma, rel=1e-3)
@@ -56,6 +56,6 @@ def test_a_class_takes_its_number_from_the_size() -> None:
 @pytest.mark.parametrize(
     "tolerance", [0.0, -1.0, (1.0, -1.0), (1.0, 1.0), "x", "IT17", "IT0", None, True, float("nan")]
 )
-def test_what_is_no_tolerance_is_refused(tolerance: object) -> None:
+def test_invalid_tolerances_are_refused(tolerance: object) -> None:
     with pytest.raises(ModelError):
         Uniform(tolerance)

@@ -154,7 +154,7 @@ def test_machines_that_do_not_close_are_counted(failing: Tolerances) -> None:
     assert not failing.good[~grashof].any()
 
 
-def test_what_fails_is_not_within_the_limits(failing: Tolerances) -> None:
+def test_failed_mechanisms_are_not_within_the_limits(failing: Tolerances) -> None:
     assert failing.yields is not None
     assert failing.yields.part == pytest.approx(1.0 - len(failing.failed) / 4000)
     assert all(row.yield_halved > failing.yields.part for row in failing.rows)  # solved again, some close
@@ -277,7 +277,7 @@ def test_machines_without_a_number_are_counted() -> None:
     assert np.isfinite(t.mean)
 
 
-def test_what_a_function_raises_of_the_machine_itself_is_raised() -> None:
+def test_exceptions_for_the_given_mechanism_are_raised() -> None:
     with pytest.raises(ModelError, match="did you mean 'rocker'"):
         tolerances(four_bar(), {"coupler": 1e-4}, lambda sol: sol.body("rockr").theta[0], n=5, way="sweep")
 

@@ -58,7 +58,7 @@ def test_the_camshaft_turns_at_half_speed_and_springs_close_the_valves() -> None
         ("I1", {}, {"height": 0.24}, "its cams would reach into the cylinders"),
     ],
 )
-def test_what_cannot_be_is_refused(layout: str, given: dict[str, Any], valves: dict[str, Any], words: str) -> None:
+def test_invalid_requests_are_refused(layout: str, given: dict[str, Any], valves: dict[str, Any], words: str) -> None:
     with pytest.raises(ModelError, match=words):
         engine(layout, **SIZE, **given, valves=ValveTrain(**valves), speed=SPEED)
 

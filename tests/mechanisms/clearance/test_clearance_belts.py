@@ -94,7 +94,7 @@ def test_all_that_the_film_draws_is_in_the_band(crossed: bool, teeth: tuple[int,
                 assert (disc_there - shadow).area() < 2e-3 * disc_there.area()
 
 
-def test_what_keeps_out_of_the_way_passes() -> None:
+def test_pieces_clear_of_the_belt_pass() -> None:
     """Its own pulleys, a post between the strands, a bar over the belt; and the belt is one of what is compared."""
     motion = solved(drive(turn=0.0), "a", "b")
     inside, over = (

@@ -218,7 +218,7 @@ def test_the_page_has_the_planes_of_each_piece_that_the_film_cuts(out_root: Path
     assert not solid(Film(motion, parts, Shot(section=0.4), out.parts_folder))["sawn"]
 
 
-def test_what_a_section_names_is_there_and_sides_fit_together(tmp_path: Path, out_root: Path) -> None:
+def test_named_pieces_of_a_section_exist_and_sides_fit_together(tmp_path: Path, out_root: Path) -> None:
     out = film_fixture.write()
     motion, parts = read_motion(out.motion), read_parts(out.parts)
     for shot, words in (

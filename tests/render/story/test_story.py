@@ -193,7 +193,7 @@ def test_a_shot_with_a_section_has_a_shot_of_it(out_root) -> None:
         tell(section=Section(front=0.5, only=("ground/base", "coupler/coupler")))
 
 
-def test_what_time_stops_for_is_in_the_strip_before_the_joint_that_carries_most(out_root) -> None:
+def test_the_reason_for_the_stop_comes_before_the_most_loaded_joint(out_root) -> None:
     motion = tell().film.motion
     both = [Reason(0.5, "reaction", "C", joint="B"), Reason(0.1, "reaction", "B", joint="B")]
     named = [curve.name for curve in curves_of(motion, None, both)]
@@ -227,7 +227,7 @@ def test_a_shot_says_otherwise_in_a_few_lines(out_root) -> None:
         (Wishes(language="xx"), r"language is 'xx'"),
     ],
 )  # fmt: skip
-def test_what_cannot_be_is_refused_with_place_and_remedy(out_root, wishes: Wishes, message: str) -> None:
+def test_invalid_stories_are_refused_with_place_and_remedy(out_root, wishes: Wishes, message: str) -> None:
     with pytest.raises(UserError, match=message):
         tell(wishes)
 
@@ -315,7 +315,7 @@ def test_it_stops_at_the_event_and_begins_within_the_motion(event: float) -> Non
     assert ramp.rate(0.0) == pytest.approx(0.25 if event >= 0.5 else event / 2)
 
 
-def test_what_is_dull_goes_fast() -> None:
+def test_dull_parts_go_fast() -> None:
     time = np.linspace(0, 10, 101)
     happens = np.where((time > 4) & (time < 5), 1.0, 0.0)
     warp = warped(time.tolist(), happens, 0.0, 10.0, 6.0)

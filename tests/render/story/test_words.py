@@ -184,7 +184,7 @@ def test_lines_break_between_facts() -> None:
     assert " ".join(broken) == long
 
 
-def test_what_is_slower_than_a_walk_has_no_km_h() -> None:
+def test_speeds_below_a_walk_have_no_km_h() -> None:
     assert without_slow("crank reaches 10.8 mm/s (0.0388 km/h)") == "crank reaches 10.8 mm/s"
     assert without_slow("ball reaches 4.43 m/s (15.9 km/h)") == "ball reaches 4.43 m/s (15.9 km/h)"
 

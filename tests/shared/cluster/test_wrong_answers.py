@@ -108,7 +108,7 @@ def failing_on(files: Any, common: str, order: str) -> bytes:
     return b"done"
 
 
-def test_what_a_worker_says_is_printed_as_one_line_of_plain_text() -> None:
+def test_words_of_a_worker_are_printed_as_one_line_of_plain_text() -> None:
     assert printable("a\x1b[2Jb\nc\r\u202ed") == "a [2Jb c d"
     assert len(printable("x" * 10_000)) < 500
 
@@ -123,7 +123,7 @@ def test_a_worker_that_others_keep_busy_is_asked_at_once(
     assert all(future.done() for future in busy)
 
 
-def test_what_is_waited_for_is_told_soon(
+def test_the_reason_for_waiting_is_reported_soon(
     client: distributed.Client, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """The only worker that was fit has gone: it may come back, so it is waited for, and that is said."""

@@ -90,7 +90,7 @@ def test_a_stopped_run_goes_on(shop: Shop, monkeypatch: pytest.MonkeyPatch) -> N
     assert shop.taken == NAMES
 
 
-def test_what_is_out_of_date_is_made_by_its_stages(
+def test_outdated_products_are_rebuilt_by_their_stages(
     shop: Shop, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Here the stage of the page says why it cannot: there is no motion."""

@@ -21,7 +21,7 @@ ROUNDS = 9
 MOST = 50.0
 """How many times the ideal slider-crank's time one with a clearance joint takes at most."""
 TOLERANCE = 1e-7
-"""What simulate() takes where nothing is said."""
+"""The default tolerance of simulate()."""
 SLIP = (0.01, 0.1)
 CASES = {"ideal": (None, 0.0), "0.05 mm": (0.05e-3, 0.0), "0.5 mm": (0.5e-3, 0.0), "0.5 mm, friction": (0.5e-3, 0.1)}
 

@@ -290,6 +290,6 @@ def test_the_diagrams_of_the_documents_are_those_of_their_code() -> None:
 
 
 def _marks(svg: str) -> list[str]:
-    """What a diagram says and how many shapes it has; places may differ in the last digit from machine to machine."""
+    """Return the texts of a diagram and its number of shapes; places may differ in the last digit."""
     elements = list(ET.fromstring(svg).iter())
     return sorted(e.text for e in elements if e.tag.endswith("text") and e.text) + [e.tag for e in elements]

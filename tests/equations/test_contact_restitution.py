@@ -175,7 +175,7 @@ def test_rest_and_a_start_within_the_surface_are_finite() -> None:
         ({"restitution": 0.5, "least_approach": 0.0}, r"least_approach is 0; it must be positive"),
     ],
 )
-def test_what_cannot_be_is_refused(numbers, said) -> None:
+def test_invalid_requests_are_refused(numbers, said) -> None:
     m = Mechanism("bad")
     ball = m.body("ball", 0.5, inertia=1.0)
     with pytest.raises(ModelError, match=said):

@@ -18,7 +18,7 @@ from mbsd.testing.forces import example
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 HALF = 0.0025
-"""Of an interval (s)."""
+"""Half of an interval (s)."""
 
 
 def unbalanced(sol: Solution) -> float:
@@ -96,7 +96,7 @@ def test_every_kind_fulfils_newton_euler_and_its_power_is_the_work(kind: ForceKi
 @pytest.mark.filterwarnings("ignore::mbsd.ModelWarning")
 @pytest.mark.filterwarnings("ignore::mbsd.InitialConditionWarning")
 @pytest.mark.parametrize("kind", force_kinds(), ids=lambda kind: kind.name)
-def test_what_is_measured_has_its_rate_and_pushes_by_its_effort(kind: ForceKind) -> None:
+def test_measured_values_have_their_rates_and_push_by_their_efforts(kind: ForceKind) -> None:
     sol = run(kind, 5, False)
     [view] = sol.forces.values()
     if view.value is not None:
@@ -175,7 +175,7 @@ def test_both_formulations_and_other_times_give_the_same_forces(formulation: str
     np.testing.assert_array_equal(sol.force("own").on("arm").fy, 0.3)
 
 
-def test_what_a_change_of_the_model_does_afterwards_is_not_in_the_solution() -> None:
+def test_later_changes_of_the_model_are_not_in_the_solution() -> None:
     m = Mechanism("hung")
     block = m.body("block", 2.0, inertia=0.1)
     m.spring("spring", m.ground.at(0, 1.0), block.origin, 100.0)

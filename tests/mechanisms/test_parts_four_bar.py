@@ -80,7 +80,7 @@ def test_the_coupler_carries_the_point_that_is_traced(pieces: dict[str, MeshPiec
     assert pieces["stylus_P"].body == "coupler"
 
 
-def test_what_can_be_bought_is_told(parts: Parts) -> None:
+def test_bought_pieces_are_listed(parts: Parts) -> None:
     bought = Counter(piece.buy for body in parts.bodies.values() for piece in body.pieces.values() if piece.buy)
     assert bought == {
         "shim ring 8x14x1 DIN 988": 6,

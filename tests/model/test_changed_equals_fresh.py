@@ -91,7 +91,7 @@ OTHERS: dict[str, list[Any]] = {
 
 @pytest.fixture(autouse=True)
 def _curves_looked_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What refuses a curve takes a quarter of a second, and the same few curves are built hundreds of times."""
+    """Check each curve once: that takes a quarter of a second, and curves are built hundreds of times."""
     for name in ("check_crossing", "check_curvature"):
         monkeypatch.setattr(plane_curves, name, _once(getattr(plane_curves, name)))
 

@@ -82,7 +82,7 @@ def test_laws_of_drivers_and_torques_are_changed() -> None:
         ("ground", {"mass": 1.0}, "no body, joint, driver, force or contact 'ground'"),
     ],
 )
-def test_what_cannot_be_is_refused_and_nothing_changes(name: str, values: dict, says: str) -> None:
+def test_invalid_changes_are_refused_and_nothing_changes(name: str, values: dict, says: str) -> None:
     m = oscillator()
     before = m.forces["spring"], m.joints["rail"], m.bodies["block"].mass, list(m.forces)
     with pytest.raises(ModelError, match=says):

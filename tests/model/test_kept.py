@@ -1,4 +1,4 @@
-"""What a solution keeps for the next one depends on all that it was found from."""
+"""Results kept for the next solution depend on all inputs of the first."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_a_result_that_is_written_into_spoils_no_other() -> None:
     assert np.array_equal(m.sweep(steps=12).q, first)
 
 
-def test_what_does_not_close_is_not_tried_again_and_named_by_its_own_words(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_open_loop_is_not_tried_again_and_named_by_its_own_words(monkeypatch: pytest.MonkeyPatch) -> None:
     import mbsd.kinematics.pose.close as pose
 
     said = []

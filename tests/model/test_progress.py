@@ -56,13 +56,13 @@ def own_fault(*given: Any) -> None:
 
 
 @pytest.mark.parametrize("call", CALLS.values(), ids=CALLS)
-def test_what_it_raises_reaches_the_user_as_it_is(call: Callable[[Any, Path], object], tmp_path: Path) -> None:
+def test_its_exceptions_reach_the_user_as_they_are(call: Callable[[Any, Path], object], tmp_path: Path) -> None:
     with pytest.raises(ZeroDivisionError, match="of the user"):
         call(own_fault, tmp_path)
 
 
 @pytest.mark.parametrize("call", CALLS.values(), ids=CALLS)
-def test_what_cannot_be_called_is_refused_before_anything_runs(
+def test_objects_that_cannot_be_called_are_refused_before_anything_runs(
     call: Callable[[Any, Path], object], tmp_path: Path
 ) -> None:
     with pytest.raises(ModelError, match=r"is 3; it must be a function of"):

@@ -78,7 +78,7 @@ def odd_one(seed: int) -> CaseResult:
     return CaseResult(seed, "fine", [Outcome(BASE, AGREED)])
 
 
-def test_what_hangs_or_dies_is_counted_and_the_rest_goes_on() -> None:
+def test_hanging_and_dying_cases_are_counted_and_the_rest_goes_on() -> None:
     outcomes = {result.seed: result.outcomes[-1] for result in results(range(6), odd_one, jobs=1, limit=1.0)}
     assert sorted(outcomes) == list(range(6))
     assert outcomes[1].state == HUNG
@@ -109,7 +109,7 @@ def test_who_waits_for_kernels_is_told_once(patience: float, words: int, monkeyp
     assert len(said) == words
 
 
-def test_what_is_wrong_ends_in_an_exit_code(out_root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_faults_end_in_an_exit_code(out_root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
         case, "run", partial(_replayed, outcome=Outcome("12 outputs a turn", WRONG, "differs", "by 1 m"))
     )

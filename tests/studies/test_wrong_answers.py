@@ -206,7 +206,7 @@ def test_an_error_of_the_connection_is_a_sentence(error: Exception) -> None:
         study(client)
 
 
-def test_what_is_waited_for_is_told_soon(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_reason_for_waiting_is_reported_soon(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(deal, "SOON", 0.1)
     monkeypatch.setattr(deal, "WAIT", 0.5)
     with (

@@ -177,13 +177,13 @@ def test_progress_is_told_and_may_end_the_fit() -> None:
         ({"progress": 1}, "must be a function"),
     ],
 )
-def test_what_cannot_be_is_refused(change: dict, says: str) -> None:
+def test_invalid_requests_are_refused(change: dict, says: str) -> None:
     arguments = {"points": [(0.1, 0.2), (0.2, 0.2)], "vary": {"crank": (0.05, 0.2)}} | change
     with pytest.raises(ModelError, match=says):
         fit_path(four_bar(), **arguments)
 
 
-def test_what_is_no_mechanism_is_refused() -> None:
+def test_objects_that_are_no_mechanism_are_refused() -> None:
     with pytest.raises(ModelError, match="fit_path: the mechanism is 3"):
         fit_path(3, [(0.1, 0.2), (0.2, 0.2)], {"crank": (0.05, 0.2)})
 

@@ -136,7 +136,7 @@ def failing() -> Tolerances:
 
 
 def test_machines_that_do_not_close_are_counted(failing: Tolerances) -> None:
-    """Those whose crank turns: shortest and longest link are no longer than the other two."""
+    """The crank turns if shortest and longest link are no longer than the other two."""
     crank, coupler, rocker = (np.array([0.04, 0.12, 0.0403]) + failing.deviations).T
     lengths = np.sort(np.column_stack([crank, coupler, rocker, np.full(len(crank), 0.12)]), axis=1)
     grashof = (lengths[:, 0] + lengths[:, 3] <= lengths[:, 1] + lengths[:, 2]) & (lengths[:, 0] == crank)
@@ -147,7 +147,7 @@ def test_machines_that_do_not_close_are_counted(failing: Tolerances) -> None:
     assert not failing.good[~grashof].any()
 
 
-def test_what_fails_is_not_within_the_limits(failing: Tolerances) -> None:
+def test_failed_mechanisms_are_not_within_the_limits(failing: Tolerances) -> None:
     assert failing.yields is not None
     assert failing.yields.part == pytest.approx(1.0 - len(failing.failed) / 4000)
     assert all(row.yield_halved > failing.yields.part for row in failing.rows)  # solved again, some close
@@ -232,7 +232,7 @@ def test_corners_that_all_fail_have_no_worst_case() -> None:
 
 
 def test_a_function_that_fails_for_a_machine_fails_that_machine_alone() -> None:
-    """What it gives besides numbers is refused, and so is a function that fails for the machine as it is given."""
+    """A result that is no number is refused, and so is a function that fails for the given machine."""
 
     def root(a: float = 1.0) -> float:
         if a > 1.08:
@@ -270,7 +270,7 @@ def test_machines_without_a_number_are_counted() -> None:
     assert np.isfinite(t.mean)
 
 
-def test_what_a_function_raises_of_the_machine_itself_is_raised() -> None:
+def test_exceptions_for_the_given_mechanism_are_raised() -> None:
     with pytest.raises(ModelError, match="did you mean 'rocker'"):
         tolerances(four_bar(), {"coupler": 1e-4}, lambda sol: sol.body("rockr").theta[0], n=5, way="sweep")
 

@@ -194,7 +194,7 @@ def test_a_woman_from_another_table_lifts_as_well() -> None:
         ({"tempo": None, "grip": math.inf}, r"grip"),
     ],
 )
-def test_what_no_lifter_can_do_is_refused(wishes: dict, message: str) -> None:
+def test_impossible_lifts_are_refused(wishes: dict, message: str) -> None:
     with pytest.raises(ModelError, match=message):
         hip_thrust(WHO, **wishes)
 

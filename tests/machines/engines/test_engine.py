@@ -133,7 +133,7 @@ def test_cylinders_fire_in_their_order_and_the_motor_takes_their_work(name: str,
         ({"layout": named("I4"), "angle": 20.0}, "those of its layout"),
     ],
 )
-def test_what_cannot_be_is_refused(arguments: dict[str, Any], words: str) -> None:
+def test_invalid_requests_are_refused(arguments: dict[str, Any], words: str) -> None:
     with pytest.raises(ModelError, match=words):
         engine(**(SIZE | arguments))
 

@@ -304,7 +304,7 @@ SUNK, WEBS = 46, 73
 
 @cache
 def planned(number: int) -> Automatic:
-    """Of one of the hundred random mechanisms."""
+    """Return the plan of one of the hundred random mechanisms."""
     _, subject, _ = drawn(SEED + number, KINDS[number % len(KINDS)])
     return Automatic(subject.m, case.moved(subject, steps=120))
 

@@ -249,7 +249,7 @@ def test_plates_round_eyes_that_others_nearly_hold_are_sound(eyes: list[tuple[fl
 
 
 def test_a_long_chain_lies_in_three_layers() -> None:
-    """Of a hundred links each meets the next two at most: not every one lies on a layer of its own."""
+    """Each of a hundred links meets the next two at most: not every one lies on a layer of its own."""
     count, bodies = 100, [f"link{k}" for k in range(100)]
     plates = [Item(body, body, disc(0, 0, 1), Reach((body,))) for body in bodies]
     pins = [

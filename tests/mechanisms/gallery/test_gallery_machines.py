@@ -51,7 +51,7 @@ def orders(motion: Motion, what: str) -> np.ndarray:
 
 
 def harmonics(p: vibration.Params) -> np.ndarray:
-    """Of m r w^2 along the guide: 1, and the series in r/l to its sixth power.
+    """Return harmonics of m r w^2 along the guide: 1, and the series in r/l to its sixth power.
 
     C. B. Biezeno, R. Grammel: Technische Dynamik, 2nd ed. 1953, vol. 2; also K. Kutzbach, in every book on engines.
     """
@@ -210,7 +210,7 @@ def test_rack_steering_follows_its_dyads() -> None:
 
 
 def test_rack_steering_is_near_ackermann() -> None:
-    """What the docstring says: the inner wheel turns by 32 degrees, the outer is off by less than 0.5."""
+    """The inner wheel turns by 32 degrees, the outer is off by less than 0.5, as the docstring has it."""
     p = steering.Params()
     travel = np.linspace(1e-4, p.travel, 200)
     inner, outer = _steered(p, -1, travel), _steered(p, 1, travel)

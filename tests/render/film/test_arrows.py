@@ -121,7 +121,7 @@ def test_a_short_peak_is_cut_and_the_legend_says_so():
 
 
 def test_blows_that_return_leave_the_rest_to_be_seen():
-    """Of a hammer that strikes in 6 % of the time with ten times the force of its spring."""
+    """A hammer strikes in 6 % of the time with ten times the force of its spring."""
     blows = np.where(TIME * 100 % 17 < 1, 100.0, 10.0)
     assert Arrows(TIME, [steady(blows)], size=1.0).scales["N"].largest == pytest.approx(10.0)
     assert Arrows(TIME, [steady(blows)], size=1.0).legend(1.0)[0].words == "forces, peaks cut"

@@ -117,7 +117,7 @@ def test_a_cluster_with_certificates_does_work_and_lets_nobody_else_in(
         ("tls://a:1", "CLUSTER_TLS"),
     ],
 )
-def test_what_is_no_address_is_refused(given: str, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_invalid_addresses_are_refused(given: str, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("CLUSTER_TLS", raising=False)
     monkeypatch.setenv("CLUSTER", given)
     with pytest.raises(UserError, match=said):

@@ -103,7 +103,7 @@ def test_a_worker_that_others_keep_busy_is_asked_at_once(
     assert all(future.done() for future in busy)
 
 
-def test_what_is_waited_for_is_told_soon(
+def test_the_reason_for_waiting_is_reported_soon(
     client: distributed.Client, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """The only worker that was fit has gone: it may come back, so it is waited for, and that is said."""

@@ -94,7 +94,7 @@ def test_a_file_that_is_gone_is_told_and_may_come_back(live: Served) -> None:
         page.hear("solved", wanted=lambda header: header["numbers"][0]["value"] == 0.35)
 
 
-def test_what_the_file_imports_is_followed_and_a_touch_is_no_edit(live: Served, tmp_path: Path) -> None:
+def test_imported_files_are_followed_and_a_touch_is_no_edit(live: Served, tmp_path: Path) -> None:
     helper = live.folder / "arm" / "sizes.py"
     helper.write_text("LENGTH = 0.4\n")
     text = arm(0.36).replace("from mbsd", "from mechanisms.arm.sizes import LENGTH\n\nfrom mbsd", 1)
@@ -115,7 +115,7 @@ def test_what_the_file_imports_is_followed_and_a_touch_is_no_edit(live: Served, 
             page._socket.recv(timeout=0.6)
 
 
-def test_what_is_printed_and_warned_reaches_the_page(live: Served) -> None:
+def test_prints_and_warnings_reach_the_page(live: Served) -> None:
     with live.page() as page:
         live.write(f"{arm(0.37)}\nprint('said by the file')\n")
         assert page.hear("line")["text"] == "said by the file"

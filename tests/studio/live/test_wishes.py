@@ -75,7 +75,7 @@ def test_where_it_cannot_be_closed_it_is_shown_up_to_there(page: Page) -> None:
     assert shown["period"] is None
 
 
-def test_what_closes_nowhere_is_refused_and_the_last_motion_stays(live: Served, page: Page) -> None:
+def test_wishes_that_close_nowhere_are_refused_and_the_last_motion_stays(live: Served, page: Page) -> None:
     before = live.session.board.payload
     page.say(do="set", values={"crank": 1.0})
     assert "do not close" in page.hear("refused")["text"]

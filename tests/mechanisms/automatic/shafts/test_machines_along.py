@@ -314,7 +314,7 @@ def test_machines_with_a_shaft_are_built_and_nothing_touches(name: str, moved: s
 
 @pytest.mark.slow
 def test_a_pair_of_legs_is_built_and_nothing_touches() -> None:
-    """Those of all six pairs are alike; each pair more takes its 30 s."""
+    """All six pairs are alike; each further pair takes its 30 s."""
     _, bodies = checked(shaft_machines.walker(1))
     assert len(bodies) == 2 + 12, "ground, crank, and two legs of six links"
 

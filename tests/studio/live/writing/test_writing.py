@@ -65,7 +65,7 @@ def test_a_later_line_that_decides_a_number_is_named(live: Served, kind: str) ->
     assert live.session.history.now == {"length": 0.25}
 
 
-def test_what_is_computed_from_it_and_what_was_computed_is_told(live: Served) -> None:
+def test_values_computed_from_it_and_computed_values_are_named(live: Served) -> None:
     source = ARM.replace(FIELDS, FIELDS + "    twice: float = 2 * length\n")
     with live.page() as page:
         solved(live, page, source)

@@ -24,7 +24,7 @@ PLACES = ("marker_arm", "marker_axis", "angle_offset", "distance_length", "numbe
 MASSES = ("mass", "inertia")
 NUMBERS_OF_LOADS = ("place", "number", "given", "user_com", "friction_number")
 TABLES_OF_LOADS = ("element", "term", "interaction", "user", "user_body", "friction")
-"""What forces are, without their numbers."""
+"""Tables that describe forces without their numbers."""
 
 
 def repacked(m: Model, packed: Packed, saved: SavedModel) -> Packed | None:

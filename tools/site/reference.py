@@ -44,7 +44,7 @@ DOORS = {
 }
 """Modules beside ``mbsd`` whose names users import."""
 MACHINES = "machines.md"
-"""What the documents import from ``mbsd.machines``, which has no door of its own."""
+"""Page of names that the documents import from ``mbsd.machines``, which has no door of its own."""
 PAGES = ("README.md", *ROOMS, *DOORS, MACHINES)
 IMPORTED = re.compile(r"^from (mbsd\.machines[\w.]*) import (\([^)]*\)|[^\n]+)", re.MULTILINE)
 
@@ -258,7 +258,7 @@ GIVEN_BACK = (
 )
 """Rooms whose classes a call gives back: nobody makes one, so the table of their fields is enough."""
 CALLED = {"Mechanism": "m.", "Solution": "sol."}
-"""What the documents call one."""
+"""Names that the documents give to an instance."""
 
 
 def entry(name: str, value: Any, alone: bool = False) -> str:

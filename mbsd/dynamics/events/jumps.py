@@ -284,7 +284,7 @@ def resolve(dyn, scratch, contacts, state, met):
     together = closed and contacts.place[met, KIND] == SLIDE and contacts.clock[SHARING] == TOGETHER
     note_met(contacts, -1 if together else met, state.lam)
     release_rows(dyn, contacts)
-    stand(dyn, scratch, state.clock[TIME], state.y)
+    stand(dyn, scratch, contacts, state.clock[TIME], state.y)
     touching = find_touching(scratch, contacts, met)
     for k in range(contacts.place.shape[0]):
         way = contacts.place[k, KIND] == WAY and contacts.number[k, RELEASED] == 0.0

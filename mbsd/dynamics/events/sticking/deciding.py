@@ -23,6 +23,7 @@ from __future__ import annotations
 
 import math
 
+from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import apart, internal, lazy
 from mbsd.dynamics.events.arrays import (
     FAILURE,
@@ -70,7 +71,8 @@ from mbsd.dynamics.events.laws.division import divide
 from mbsd.dynamics.events.rows import gaps_of
 from mbsd.dynamics.events.sticking.sharing import limit_of, stand
 from mbsd.dynamics.events.sticking.together import divide_together
-from mbsd.dynamics.formulation import along, respond
+from mbsd.dynamics.formulation import along, push, respond
+from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.state import TIME
 from mbsd.equations.joint_friction import FAINT as FAINT_LOAD
 from mbsd.equations.joint_friction import MOST_PASSES, SENSE, SETTLED, X, apply_friction, normal_forces
@@ -344,13 +346,41 @@ def find_left(contacts, rounding):
 
 
 @internal
-def _loads(dyn, scratch, contacts, t, y):
-    """Fill sticks.load[0] with all loads but friction of joints, after stand."""
+def _loads_in_plane(dyn, scratch, contacts, t, y):
     load = contacts.sticks.load[0]
     for c in range(load.shape[0]):
         load[c] = dyn.weight[c]
     if dyn.loads.total > 0:
         apply_loads(dyn.loads, dyn.laws, t, y[0], y[1], scratch.ws.cos_sin, load)
+
+
+@internal
+def _loads(dyn, scratch, contacts, t, y):
+    load = contacts.sticks.load[0]
+    for c in range(load.shape[0]):
+        load[c] = scratch.force[c]
+    for b in range(dyn.schur.rows.shape[0]):
+        for s in range(2):
+            row = dyn.schur.rows[b, s]
+            if row >= 0:
+                push(dyn, scratch, row, contacts.lam[row], load)
+
+
+@internal
+def _rub_in_plane(dyn, scratch, v, normal, load):
+    apply_friction(dyn.system, dyn.loads, v, scratch.ws, normal, 1.0, load)
+
+
+@internal
+def _rub(dyn, scratch, v, normal, load):
+    pass
+
+
+find_loads = alternatives({Dynamics: _loads_in_plane}, _loads)
+"""(dyn, scratch, contacts, t, y): fill sticks.load[0] with all loads but friction of joints, after stand. In added
+formulations they are what accelerations have left of the forces, and what the rows that hold carry."""
+rub = alternatives({Dynamics: _rub_in_plane}, _rub)
+"""(dyn, scratch, v, normal, load): add friction of joints under normal forces (f,); added formulations have none."""
 
 
 @lazy(None)
@@ -382,7 +412,7 @@ def _try(dyn, scratch, contacts, v, hair, rounding, giving):
     lam = sticks.lam[1]
     for c in range(load.shape[0]):
         load[c] = sticks.load[0, c]
-    apply_friction(dyn.system, dyn.loads, v, scratch.ws, sticks.normal[NOW], 1.0, load)
+    rub(dyn, scratch, v, sticks.normal[NOW], load)
     largest = 0.0
     for c in range(3, load.shape[0]):
         largest = max(largest, abs(load[c]))
@@ -461,9 +491,9 @@ def decide(dyn, scratch, contacts, state, halted, slipping, touched):
     largest = -1.0
     hair = 1.0 - HAIR if slipping else 1.0
     rounding = AT_LIMIT_BEYOND if slipping else AT_LIMIT
-    stand(dyn, scratch, state.clock[TIME], state.y)
+    stand(dyn, scratch, contacts, state.clock[TIME], state.y)
     begin_deciding(contacts, hair)
-    _loads(dyn, scratch, contacts, state.clock[TIME], state.y)
+    find_loads(dyn, scratch, contacts, state.clock[TIME], state.y)
     for _ in range(contacts.friction.gap.shape[0] + 1):
         _choose(dyn, scratch, contacts, v, halted)
         begin_giving(contacts)

@@ -34,6 +34,7 @@ friction of joints that slide under unit normal forces. All is linear in x.
 
 from __future__ import annotations
 
+from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import apart, internal
 from mbsd.dynamics.events.arrays import (
     BASIS,
@@ -45,7 +46,8 @@ from mbsd.dynamics.events.arrays import (
 )
 from mbsd.dynamics.events.friction import gives
 from mbsd.dynamics.events.rows import find_answer, read_compliance
-from mbsd.dynamics.formulation import along, respond
+from mbsd.dynamics.formulation import along, derivative, respond
+from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.reference.schur import factor_schur
 from mbsd.dynamics.reference.sliding import begin_sliding, slide
 from mbsd.equations.assembly import evaluate_gamma, evaluate_position
@@ -55,16 +57,22 @@ from mbsd.equations.products import eliminate
 
 
 @apart
-def stand(dyn, scratch, t, y):
-    """Fill scratch.ws and, with the rows that hold now, the factors at a state y (2, 3 nb) and time t (s).
-
-    gamma (m,) is in scratch.ws.right[0].
-    """
+def _stand_in_plane(dyn, scratch, contacts, t, y):
     if scratch.drive.shape[0] > 1:
         evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
     evaluate_position(dyn.system, y[0], scratch.drive, scratch.ws)
     evaluate_gamma(dyn.system, y[1], scratch.drive, scratch.ws, scratch.ws.right[0])
     factor(dyn, scratch)
+
+
+@internal
+def _stand(dyn, scratch, contacts, t, y):
+    derivative(dyn, scratch, t, y, contacts.rates, contacts.lam)
+
+
+stand = alternatives({Dynamics: _stand_in_plane}, _stand)
+"""(dyn, scratch, contacts, t, y): fill scratch.ws and, with the rows that hold now, the factors at a state y (2, 3 + n)
+and time t (s). gamma (m,) is in scratch.ws.right[0]. Added formulations evaluate their accelerations."""
 
 
 @apart

@@ -367,19 +367,19 @@ def _loads(dyn, scratch, contacts, t, y):
 
 
 @internal
-def _rub_in_plane(dyn, scratch, v, normal, load):
+def _add_friction_in_plane(dyn, scratch, v, normal, load):
     apply_friction(dyn.system, dyn.loads, v, scratch.ws, normal, 1.0, load)
 
 
 @internal
-def _rub(dyn, scratch, v, normal, load):
+def _add_no_friction(dyn, scratch, v, normal, load):
     pass
 
 
 find_loads = alternatives({Dynamics: _loads_in_plane}, _loads)
 """(dyn, scratch, contacts, t, y): fill sticks.load[0] with all loads but friction of joints, after stand. In added
 formulations they are what accelerations have left of the forces, and what the rows that hold carry."""
-rub = alternatives({Dynamics: _rub_in_plane}, _rub)
+add_friction = alternatives({Dynamics: _add_friction_in_plane}, _add_no_friction)
 """(dyn, scratch, v, normal, load): add friction of joints under normal forces (f,); added formulations have none."""
 
 
@@ -412,7 +412,7 @@ def _try(dyn, scratch, contacts, v, hair, rounding, giving):
     lam = sticks.lam[1]
     for c in range(load.shape[0]):
         load[c] = sticks.load[0, c]
-    rub(dyn, scratch, v, sticks.normal[NOW], load)
+    add_friction(dyn, scratch, v, sticks.normal[NOW], load)
     largest = 0.0
     for c in range(3, load.shape[0]):
         largest = max(largest, abs(load[c]))

@@ -1,4 +1,4 @@
-"""Automatic parts, and a fan that the large pulley drives."""
+"""The automatic parts, and a fan on the large pulley, which is what the belt drives."""
 
 from __future__ import annotations
 

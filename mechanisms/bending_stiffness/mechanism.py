@@ -31,7 +31,10 @@ class Params:
 
 
 def build(p: Params) -> Mechanism:
-    """Join uniform rods end to end by springs of E I / h, twice that at the clamp (Hencky's chain)."""
+    """Uniform rods end to end.
+
+    Between two of them a spring of E I / h, twice that at the clamp (Hencky's chain).
+    """
     m = Mechanism("bending_stiffness", gravity=(0.0, -p.gravity))
     part = p.length / p.links
     before, place = m.ground, m.ground.origin

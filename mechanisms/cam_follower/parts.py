@@ -1,4 +1,4 @@
-"""Automatic parts, and a valve that the cam lifts in its guide, over a seat on the base.
+"""The automatic parts, and what the cam lifts: a valve in its guide, over a seat on the base.
 
 An arm that swings lifts none.
 """

@@ -45,7 +45,10 @@ def lift_law(p: Params) -> Lift:
 
 
 def build(p: Params) -> Mechanism:
-    """Turn the cam about the origin; the arm's pivot is to its right, and the arm lies over the cam."""
+    """The cam turns about the origin.
+
+    The arm's pivot is right of it, and its axis runs from the pivot over the cam.
+    """
     m = Mechanism("cam_follower_angular")
     cam, arm = m.body("cam"), m.body("arm", p.mass, (p.tip / 2, 0.0), p.mass * p.tip**2 / 12)
     m.revolute("O", m.ground.at(0, 0), cam.origin)

@@ -1,4 +1,4 @@
-"""Automatic parts, and a scale in degrees behind the tip that shows the swing."""
+"""The automatic parts, and a scale in degrees behind the tip, on which one reads the swing."""
 
 from __future__ import annotations
 

@@ -33,7 +33,10 @@ class Params:
 
     @property
     def torque_speed(self) -> Curve:
-        """Return the motor's curve; speed and torque are negative, as it turns clockwise."""
+        """Curve of the motor.
+
+        It turns clockwise for the crank to turn the other way: speed and torque are negative.
+        """
         return curve([-speed for speed in self.speeds[::-1]], [-torque for torque in self.torques[::-1]])
 
 

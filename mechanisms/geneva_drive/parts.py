@@ -1,4 +1,4 @@
-"""Automatic parts, and a table that is indexed, with a piece for each slot, and a mark."""
+"""The automatic parts, and what is indexed: a table with a piece for each slot, and a mark."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Automatic parts, and a cup of tea on a tray, the reason for a soft motion."""
+"""The automatic parts, and what asks for a soft motion: a cup of tea on a tray."""
 
 from mechanisms.automatic import automatic
 from mechanisms.inverse_slider_crank.mechanism import Params, build

@@ -1,4 +1,4 @@
-"""Automatic parts, a sheet of paper under both hearts, and a pen at the far end."""
+"""The automatic parts, a sheet of paper under both hearts, and a pen at the far end."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Automatic parts, and the front of a car with its driver round the body's plate (mm)."""
+"""The automatic parts, and round the body's plate the front of a car with its driver (mm)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Automatic parts, and the tool and the work of a shaping machine."""
+"""The automatic parts, and what makes them a shaping machine: the ram's tool, and the work."""
 
 from __future__ import annotations
 

@@ -27,7 +27,10 @@ class Params:
 
 
 def build(p: Params) -> Mechanism:
-    """Build it seen from above, driving along y; markers are given in the world, wheels straight."""
+    """Seen from above, the car drives along y.
+
+    Markers of the knuckles are given in the world, wheels straight.
+    """
     m = Mechanism("rack_steering", gravity=None)
     pinion, rack = m.body("pinion"), m.body("rack")
     radius = p.module * p.teeth / 2

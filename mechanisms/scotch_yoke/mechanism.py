@@ -16,7 +16,10 @@ VARIANTS = {
 
 @dataclass(frozen=True)
 class Params:
-    """Lengths (m), mass of the yoke (kg), speed (rad/s); ``tuned`` adds a spring of tune * mass * speed^2."""
+    """Lengths (m), mass of the yoke (kg) and speed (rad/s).
+
+    ``tuned`` adds a spring of tune * mass * speed^2.
+    """
 
     crank: float = 0.040
     guide: float = 0.140  # from the slot to the block in the guide

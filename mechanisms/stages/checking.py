@@ -12,7 +12,7 @@ from shared.stage.paths import known_name
 
 
 def run(name: str, as_json: bool = False) -> int:
-    """Build the mechanism and look for likely mistakes; return 1 if there are any, notes apart.
+    """Build the mechanism and look at it; 1 where something looks odd, notes apart.
 
     Raises UserError if it fails.
     """

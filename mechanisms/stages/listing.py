@@ -1,4 +1,4 @@
-"""``make list``: every mechanism, its title, its results, and results older than their sources."""
+"""``make list``: every mechanism, what it is, what is made of it, and what of that is outdated."""
 
 from __future__ import annotations
 
@@ -12,15 +12,7 @@ from shared.contract.quantity import counted
 from shared.stage.console import warn
 from shared.stage.errors import UserError
 from shared.stage.memory import remembered
-from shared.stage.paths import (
-    Out,
-    all_mechanisms,
-    mechanism_file,
-    mechanism_names,
-    out_root,
-    unfit_names,
-    variants_in,
-)
+from shared.stage.paths import Out, all_mechanisms, mechanism_file, mechanism_names, out_root, unfit_names, variants_in
 from shared.stage.stages import outdated_by, results_of
 
 
@@ -33,7 +25,7 @@ class _Solved(msgspec.Struct):
 
 
 def run(names: bool = False, as_json: bool = False) -> None:
-    """Print a line for each mechanism: name, degrees of freedom, title, files.
+    """Print a line for each mechanism: name, degrees of freedom, first line of its docstring, files.
 
     The freedom is known once it is solved, the title is the first line of its docstring. Results that are older than
     the files or results that they were made of are named apart. No author's code is run, so of parts it is not known.
@@ -58,7 +50,7 @@ def run(names: bool = False, as_json: bool = False) -> None:
 
 
 def tell_current(names: Iterable[str]) -> None:
-    """Print the names whose motion, parts and shot are up to date, a line each.
+    """Print a line with the name of each mechanism whose motion, parts and shot are up to date.
 
     mechanism.py is run for its parameters and may do anything, so this is asked in a process of its own.
     """

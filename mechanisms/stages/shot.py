@@ -77,7 +77,7 @@ def _without_file(out: Out) -> None:
 def _key(names: Names | None, inputs: Inputs) -> str:
     """Return the hash of all that shot.json follows from.
 
-    ``inputs``: the files that shot.py is made of and reads.
+    ``inputs``: what shot.py is made of, and what it reads.
     """
     return key_of(sources_hash(*SOURCES), names and names.listed(), inputs.digest(), *_look())
 

@@ -24,7 +24,10 @@ class Params:
 
 
 def build(p: Params) -> Mechanism:
-    """Hang the swings at -90 degrees, with masses at their lower ends and at the table's right end."""
+    """A mass is at the lower end of each swing and at the right end of the table.
+
+    The swings hang at -90 degrees.
+    """
     m = Mechanism("swing_table", gravity=(0.0, -p.gravity))
     left, right, table = (
         m.bar(name, length, p.mass, com=(length, 0), inertia=0.0)

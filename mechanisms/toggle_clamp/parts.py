@@ -1,4 +1,4 @@
-"""Automatic parts, and a clamped block on a table, under a foot of rubber."""
+"""The automatic parts, and what is clamped: a block on a table, under a foot of rubber."""
 
 from __future__ import annotations
 

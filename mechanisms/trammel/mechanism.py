@@ -22,7 +22,10 @@ class Params:
 
 
 def build(p: Params) -> Mechanism:
-    """Lay the first groove along x; the rod turns evenly, its pen beyond the second shuttle's pin."""
+    """The first groove lies along x.
+
+    The rod turns evenly; its pen is beyond the pin of the second shuttle.
+    """
     m = Mechanism("trammel", gravity=None)
     first, second = m.body("first"), m.body("second")
     rod = m.bar("rod", p.pins + p.beyond)

@@ -1,4 +1,7 @@
-"""Film of the trammel from high up, so that grooves and ellipse are clear; the rod is coloured."""
+"""How the trammel is filmed: from high up, so that grooves and ellipse read.
+
+The rod is coloured, as what is turned.
+"""
 
 from shared.shot import Camera, Shot
 

@@ -54,7 +54,10 @@ class Params:
 
 
 def build(p: Params) -> Mechanism:
-    """Build it without weight, which shakes nothing; the rod is two masses with inertia mass * l/3 * 2l/3."""
+    """Without weight, which does not shake.
+
+    The rod is as two masses on its pins: inertia mass * l/3 * 2l/3.
+    """
     m = Mechanism("vibration_slider_crank", gravity=None)
     tail = p.arm if p.counterweight else 0.0
     mass = p.crank_mass + p.counter_mass

@@ -1,4 +1,4 @@
-"""Automatic parts, a windscreen behind them, and blades of rubber on the wipers."""
+"""The automatic parts, a windscreen behind them, and blades of rubber on the wipers."""
 
 from __future__ import annotations
 

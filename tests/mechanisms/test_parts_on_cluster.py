@@ -146,10 +146,21 @@ def test_files_of_authors_travel_and_no_others(project: Project) -> None:
     assert set(collected("arm")) == own | {"mechanisms/helper.py", "mechanisms/other/mechanism.py"}
 
 
-@pytest.mark.parametrize("path", ["../x.py", "/etc/x", "shared/x.py", "mechanisms/stages/x.py", "mechanisms/../x.py"])
-def test_a_worker_writes_no_other_files(tmp_path: Path, path: str) -> None:
+OUTSIDE = [
+    (path, None) for path in ("../x.py", "/etc/x", "shared/x.py", "mechanisms/stages/x.py", "mechanisms/../x.py")
+]
+OUTSIDE += [
+    (path, "../machines")
+    for path in ("workshop:../x.py", "workshop:/etc/x", "workshop:", "../tree/shared/x.py", "workshop:a/../../x")
+]
+"""Paths, and the folder of machines to which they belong, if it is one of the user's own."""
+
+
+@pytest.mark.parametrize(("path", "own"), OUTSIDE)
+def test_a_worker_writes_no_other_files(tmp_path: Path, path: str, own: str | None) -> None:
+    tree = tmp_path / "tree"
     with pytest.raises(UserError, match="is no file of an author's"):
-        built._write_file(tmp_path / "tree", path, b"")
+        built._write_file(tree, path, b"", built.own_folder(tree, own) if own else None)
     assert not list(tmp_path.rglob("*.py"))
 
 
@@ -296,55 +307,12 @@ def test_a_worker_that_has_contents_alone_makes_the_same_bytes(
     assert not scale or not (folder / "out" / name / "parts").exists(), "none of full size are made for a model"
 
 
-@pytest.mark.parametrize(
-    "path", ["workshop:../x.py", "workshop:/etc/x", "workshop:", "../tree/shared/x.py", "workshop:a/../../x"]
-)
-def test_a_worker_writes_no_file_outside_the_copy_of_the_folder(tmp_path: Path, path: str) -> None:
-    tree = tmp_path / "tree"
-    with pytest.raises(UserError, match="is no file of an author's"):
-        built._write_file(tree, path, b"", built.own_folder(tree, "../machines"))
-    assert not list(tmp_path.rglob("*.py"))
-
-
 def test_functions_of_a_mechanism_run_where_its_folder_is_not(folder: Path) -> None:
     """A worker of a study gets build() and measure() alone, and may have been started in a folder of its own."""
     with author_code("arm"):
         pass
     with pytest.raises(ZeroDivisionError), author_code("elsewhere"):
         raise ZeroDivisionError
-
-
-@pytest.fixture
-def cluster_of_own(tmp_path: Path) -> Iterator[Any]:
-    """A scheduler and two workers, each a process with a nanny that starts it again."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("MBSD_OUT", str(tmp_path / "workers"))
-        with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster_of_own:
-            yield cluster_of_own
-
-
-@pytest.mark.slow
-def test_a_killed_worker_loses_no_parts_of_an_own_folder(folder: Path, cluster_of_own: Any, tmp_path: Path) -> None:
-    killed: list[int] = []
-
-    def kill() -> None:
-        """The worker that has begun a stage."""
-        while not killed:
-            for worker in cluster_of_own.workers.values():
-                if worker.pid and any("parts" in child.cmdline() for child in psutil.Process(worker.pid).children()):
-                    killed.append(worker.pid)
-                    os.kill(worker.pid, signal.SIGKILL)
-                    return
-            time.sleep(0.02)
-
-    threading.Thread(target=kill, daemon=True).start()
-    far = {"CLUSTER": cluster_of_own.scheduler_address, "MBSD_OUT": str(tmp_path / "far")}
-    done = mbsd(folder, "parts", "arm", **far)
-    assert killed
-    assert "parts: arm: made by worker tcp://" in done.stdout, done.stderr
-    assert mbsd(folder, "parts", "arm").returncode == 0
-    assert files_in(tmp_path / "far" / "arm" / "parts") == files_in(folder / "out" / "arm" / "parts")
-    assert "nothing to do" in mbsd(folder, "parts", "arm", **far).stdout
 
 
 # Parts from workers: believed only where document, names, hashes, meshes, solids and masses hold together.

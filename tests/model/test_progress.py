@@ -10,21 +10,15 @@ import pytest
 
 from mbsd import Mechanism, ModelError, constant_rate, fit_path, optimise, tolerances
 from mbsd.measures import largest, samples
+from tools.models import linkages
 
 POINTS = [(0.05, 0.05), (0.04, 0.06), (0.03, 0.07)]
 
 
 def four_bar() -> Mechanism:
-    m = Mechanism("four_bar")
-    crank, coupler, rocker = m.bar("crank", 0.04, mass=0.1), m.bar("coupler", 0.12), m.bar("rocker", 0.09)
-    m.revolute("A", m.ground.at(0, 0), crank.start)
-    m.revolute("B", crank.end, coupler.start)
-    m.revolute("C", coupler.end, rocker.end)
-    m.revolute("D", m.ground.at(0.12, 0), rocker.start)
-    m.drive_angle("motor", crank, constant_rate(6.0))
-    m.trace("P", coupler.at(0.06, 0.03))
-    m.start_near(crank=0, coupler=45, rocker=100)
-    return m
+    return linkages.four_bar(
+        0.12, 0.04, 0.12, 0.09, masses=(0.1, None, None), law=constant_rate(6.0), traced=(0.06, 0.03)
+    )
 
 
 def door() -> Mechanism:

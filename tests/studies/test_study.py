@@ -16,23 +16,16 @@ import pytest
 from pandas.testing import assert_frame_equal
 
 import mbsd
-from mbsd import Mechanism, ModelError, ModelWarning, constant_rate
+from mbsd import Mechanism, ModelError, ModelWarning
 from mbsd.studies import work
+from tools.models import linkages
 
 STEPS = 36
 LENGTHS = {"crank": [0.03, 0.04, 0.2], "rocker": np.array([0.08, 0.09])}
 
 
 def build(crank: float, rocker: float) -> Mechanism:
-    m = Mechanism("four_bar")
-    a, b, c = m.bar("crank", crank), m.bar("coupler", 0.12), m.bar("rocker", rocker)
-    m.revolute("A", m.ground.at(0, 0), a.start)
-    m.revolute("B", a.end, b.start)
-    m.revolute("C", b.end, c.end)
-    m.revolute("D", m.ground.at(0.12, 0), c.start)
-    m.drive_angle("motor", a, constant_rate(2 * math.pi))
-    m.start_near(crank=0, coupler=60, rocker=100)
-    return m
+    return linkages.four_bar(0.12, crank, 0.12, rocker, (60, 100))
 
 
 def swing(m: Mechanism) -> dict[str, float]:

@@ -9,22 +9,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, ModelError, Tolerances, Uniform, constant_rate, harmonic, tolerances
+from mbsd import Mechanism, ModelError, Tolerances, Uniform, harmonic, tolerances
 from mbsd.measures import final, largest, samples
 from tests.tolerancing.linkages import SIZES, four_bar, rocker_angle, switch
+from tools.models import linkages
 
 
 def nearly_open() -> Mechanism:
     """A four-bar whose crank may just turn: s + l is 0.3 mm less than p + q."""
-    m = Mechanism("nearly open")
-    crank, coupler, rocker = m.bar("crank", 0.04), m.bar("coupler", 0.12), m.bar("rocker", 0.0403)
-    m.revolute("A", m.ground.at(0, 0), crank.start)
-    m.revolute("B", crank.end, coupler.start)
-    m.revolute("C", coupler.end, rocker.end)
-    m.revolute("D", m.ground.at(0.12, 0), rocker.start)
-    m.drive_angle("motor", crank, constant_rate(2 * np.pi))
-    m.start_near(crank=90, coupler=0, rocker=90)
-    return m
+    return linkages.four_bar(0.12, 0.04, 0.12, 0.0403, (0, 90), at=90)
 
 
 def test_one_by_one_is_all_at_once() -> None:
@@ -171,7 +164,7 @@ def test_one_by_one_they_have_the_names_of_errors() -> None:
     )  # fmt: skip
     assert len(t.failed) == sum(t.failures.values()) > 0
     assert len(t.failures) == len({reason.partition(" (")[0] for reason in t.failures})
-    assert all("Error (nearly" in reason and reason.endswith(")") for reason in t.failures)
+    assert all("Error (four_bar" in reason and reason.endswith(")") for reason in t.failures)
 
 
 def test_tables_have_all_digits(tmp_path: Path) -> None:

@@ -38,6 +38,7 @@ CONSTANTS = "mbsd.model.body"
 DOORS = {
     "cams.md": ("mbsd.cams", "Cams"),
     "extend.md": ("mbsd.extend", "Kinds of your own"),
+    "extend_derivatives.md": ("mbsd.extend.derivatives", "Derivatives in coordinates of your own"),
     "extend_integrators.md": ("mbsd.extend.integrators", "Integrators of your own"),
     "testing.md": ("mbsd.testing", "Tests of your own kinds"),
 }

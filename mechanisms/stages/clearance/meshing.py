@@ -24,10 +24,10 @@ PARTS = 8
 
 @dataclass(frozen=True)
 class Rolling:
-    """A wheel of one body that rolls on a wheel of another.
+    """Ideal rolling of a second body on a first one, seen from the first.
 
-    Seen from the first body, the centre of the second is at ``distance`` (mm) from a point of it in the direction phi
-    (rad), and the second is turned by ``turn + ratio phi``. No point of it is farther from there than ``off`` (mm).
+    The second one's centre is at ``distance`` (mm) from a point of the first in the direction phi (rad), and it is
+    turned by ``turn + ratio phi``. No point of it is farther from there than ``off`` (mm).
     """
 
     distance: float
@@ -58,7 +58,7 @@ class Rolling:
 
 
 def rolling(path: RelativePath, about: np.ndarray, ratio: float, reach: float) -> Rolling | None:
-    """Return the ideal rolling with that ratio that is nearest to the motion.
+    """Return ideal rolling about ``about`` (mm, first body's frame) with that ratio, next to the motion.
 
     It rolls about the point ``about`` (mm, frame of the first body). ``off`` holds for points within ``reach`` (mm) of
     the second body's centre and for all time: at PARTS times in each interval it is looked at, and between them a
@@ -116,7 +116,7 @@ FEWEST_PITCHES = 2.0
 
 @dataclass(frozen=True)
 class Gears:
-    """Two wheels of a gear pair: bodies, centres (mm, in the bodies' frames) and teeth.
+    """Two wheels of a gear pair: their bodies, centres (mm, in the bodies' frames), teeth.
 
     A ring is the first.
     """
@@ -155,10 +155,7 @@ def meshes(motion: Motion, pieces: list[MeshPiece]) -> Meshes:
 
 
 def least_in_mesh(sweep: Sweep, known: Meshes, where: dict[str, BodyPath]) -> Least | None:
-    """Return the least gap of two pieces that are wheels in mesh, if one pitch shows it.
-
-    None otherwise.
-    """
+    """Return the least gap of two wheels in mesh over the motion, if one pitch shows it; else None."""
     pieces = {sweep.mover.body: sweep.mover, sweep.still.body: sweep.still}
     for gears in known.get(frozenset(pieces), []):
         first, second = (pieces[body] for body in gears.bodies)
@@ -208,9 +205,9 @@ def _least(sweep: Sweep, gears: Gears, first: MeshPiece, second: MeshPiece, wher
 
 
 def _one_pitch(ideal: Rolling, gears: Gears, pitch: float, off: float) -> RelativePath:
-    """Return the second wheel's frame about its centre over a pitch, seen from the first.
+    """Return the second wheel's frame about its centre, seen from the first.
 
-    The wheel moves on by a pitch in a second.
+    The centre goes on by a pitch in a second.
     """
     time = np.linspace(0.0, 1.0, STEPS + 1)
     angle = ideal.start + pitch * time
@@ -280,10 +277,7 @@ def bands(parts: Parts, motion: Motion, where: Mapping[str, BodyPath]) -> Iterat
 
 
 def band(way: BeltPath, wide: float, high: float) -> np.ndarray:
-    """Return facets (n, 3, 3) round the places of a belt.
-
-    They are those within ``wide`` of the belt in the plane, and within ``high`` over and under it.
-    """
+    """Return (n, 3, 3) facets round all places within ``wide`` of the belt and ``high`` over and under it."""
     import manifold3d
 
     starts = np.concatenate([[0.0], np.cumsum(way.parts)])
@@ -310,7 +304,10 @@ def _holding(parts: Parts, name: str) -> tuple[frozenset[tuple[str, str]], Held 
 
 
 def _path(joint: JointMotion, where: Mapping[str, BodyPath]) -> tuple[BodyPath, float]:
-    """Return the motion of the first centre and of the line of centres, and their first distance (mm)."""
+    """Return the motion of the first centre and of the line of centres, and their distance (mm).
+
+    The distance is that at the start.
+    """
     assert joint.shape is not None
     ends = [
         _centre(where[body], mm(x), mm(y))

@@ -24,9 +24,9 @@ class Outline(Tree):
     """Segments of the shadow's edge, relative to ``centre``; the shadow is on the left of each."""
 
     def __init__(self, edges: np.ndarray, times: np.ndarray, centre: np.ndarray, radius: float) -> None:
-        """Keep the ends of ``edges`` (n, 2, 2; mm).
+        """``edges`` (n, 2, 2): their ends (mm).
 
-        ``times`` (n,): of how many facets more each edge is a side, on its left.
+        ``times`` (n,): of how many facets more each is a side, on its left.
         """
         self.edges, self.times = edges, times
         segments = _divided(edges - centre, longest_in(radius))
@@ -37,7 +37,7 @@ class Outline(Tree):
 
 
 def outline(piece: MeshPiece, low: float, high: float) -> Outline | None:
-    """Return the outline of ``piece`` between two heights (mm); None if nothing is there.
+    """Return the outline of what ``piece`` has between two heights (mm); None if that is nothing.
 
     It is kept with the piece: many others have the same heights in common with it.
     """
@@ -60,7 +60,7 @@ def _outline(piece: MeshPiece, low: float, high: float) -> Outline | None:
 def edge_of(facets: np.ndarray, piece: MeshPiece) -> Outline | None:
     """Return the edge of the shadow of ``facets`` (n, 3, 3) of a piece; None without any.
 
-    All facets look up, or all look down.
+    All of them look up, or all look down.
     """
     index = np.arange(3 * len(facets)).reshape(-1, 3)
     (x, y), (u, v) = (facets[0, k, :2] - facets[0, 0, :2] for k in (1, 2))
@@ -107,7 +107,7 @@ def _between(piece: MeshPiece, low: float, high: float) -> tuple[np.ndarray, np.
 
 
 def _unmatched(edges: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return pairs (n, 2) of numbers below ``count`` more frequent than reversed, and by how much."""
+    """Return pairs of numbers below ``count`` (n, 2) met more often than reversed, and how much more."""
     edges = edges[edges[:, 0] != edges[:, 1]]
     keys, number = np.unique(edges[:, 0] * count + edges[:, 1], return_counts=True)
     forth = np.stack([keys // count, keys % count], axis=1)
@@ -164,9 +164,9 @@ class OutlineSearch(Search):
 
 
 def nearest(p: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the distance (n,) of segments p and q (n, 2; x + i y), and the vector (n,) from p to q.
+    """Return the distance (n,) of segments p and q (n, 2; x + i y), and the way (n,) from p to q.
 
-    Segments that cross have distance 0.
+    The distance is 0 where they cross.
     """
     ways = np.stack([-_way(q[:, 0], p), -_way(q[:, 1], p), _way(p[:, 0], q), _way(p[:, 1], q)])
     size = np.abs(ways)
@@ -217,7 +217,7 @@ def least_by_outlines(sweep: Sweep, gap: float, time: float, poses: int) -> Leas
 
 
 def proven_by_outlines(sweep: Sweep, gap: float, time: float) -> float:
-    """Return how far (mm) outlines prove the pieces to stay apart.
+    """Return how far (mm) outlines prove the pieces apart, of the ``gap`` measured at ``time``.
 
     ``gap`` was measured at ``time``. Walls that lean or bulge bring the outlines nearer than the pieces, so that it may
     be much less than the least gap.
@@ -244,9 +244,9 @@ def _measured(sweep: Sweep, least: Least, gap: float, time: float) -> tuple[floa
 
 
 def _outlines(sweep: Sweep, beyond: float) -> tuple[Outline, Outline] | None:
-    """Return outlines of both pieces near their common heights.
+    """Return outlines of both pieces within ``beyond`` (mm) of their common heights.
 
-    That is within ``beyond`` (mm) of them. None if there are none, or one covers the other.
+    None if none, or one covers the other.
     """
     low = max(sweep.still.z_range[0], sweep.mover.z_range[0]) - beyond
     high = min(sweep.still.z_range[1], sweep.mover.z_range[1]) + beyond
@@ -281,9 +281,9 @@ BESIDE = 0.2
 
 
 def never_over(sweep: Sweep, gap: float) -> bool:
-    """Return True if no horizontal face of one piece is proven to face the other within ``gap`` (mm).
+    """Return True if no horizontal face of a piece is ever within ``gap`` (mm) over or under the other.
 
-    Only faces straight over or under each other count, at any time. False proves nothing.
+    That is proven of facets of the other that face it. False proves nothing.
     """
     for sign in (1.0, -1.0):
         under, over = _near(sweep.still, sweep.mover, sign, gap)
@@ -296,7 +296,8 @@ def never_over(sweep: Sweep, gap: float) -> bool:
 def _near(lying: MeshPiece, other: MeshPiece, sign: float, gap: float) -> tuple[np.ndarray, np.ndarray]:
     """Return horizontal faces of ``lying`` and the facets of ``other`` that face them.
 
-    ``sign``: 1 for faces that look up, -1 for down; of both, those that have the other within ``gap`` in height.
+    The faces look up (``sign`` 1) or down (-1). Of both there are only those that have the other within ``gap`` in
+    height.
     """
     faces, facets = facing(lying, other, sign)
     low, high = (sign * facets[:, :, 2]).min(axis=1), (sign * facets[:, :, 2]).max(axis=1)

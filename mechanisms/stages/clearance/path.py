@@ -1,4 +1,4 @@
-"""The motion of two pieces against each other: path, scale, common axes, pieces that stay far apart."""
+"""The motion of two pieces against each other: path, scale, common axes, pieces far apart."""
 
 from __future__ import annotations
 
@@ -6,21 +6,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
 
+from mechanisms.stages.clearance.pieces import MeshPiece
 from shared.contract import Motion, Parts
+from shared.contract.loads import Shape
+from shared.contract.motion import BodyMotion, JointMotion
 from shared.shapes.standards import Fit
 from shared.shapes.units import mm
-
-if TYPE_CHECKING:
-    from mechanisms.stages.clearance.pieces import MeshPiece
-    from shared.contract.loads import Shape
-    from shared.contract.motion import BodyMotion, JointMotion
-    from shared.stage.scale import Scale
-
+from shared.stage.scale import Scale
 
 # The motion of a model at a scale: that of the machine, geometrically similar; angles and times stay. And what a
 # refusal of its parts adds.
@@ -33,7 +29,7 @@ OF_SHAPE = ("radius_first", "radius_second", "pin_radius", "length")
 def at_scale(motion: Motion, ratio: float) -> Motion:
     """Return a motion as the proof of clearance reads it, ``ratio`` times as large.
 
-    Loads, masses and energies stay those of the full-size mechanism.
+    Loads, masses and energies stay those of the machine.
     """
     bodies = {name: _body(body, ratio) for name, body in motion.bodies.items()}
     joints = {name: _joint(joint, ratio) for name, joint in motion.joints.items()}
@@ -62,10 +58,7 @@ def _times(values: list[float], ratio: float) -> list[float]:
 
 
 def what_shrinks(scale: Scale) -> str:
-    """Return the end of an error message for parts at ``scale``.
-
-    It says why a parts.py that fits its machine need not fit the model.
-    """
+    """Return the end of a refusal at ``scale``: why a parts.py that fits its machine may not fit here."""
     running = Fit().running
     return (
         f"millimetres in a parts.py, clearances too, shrink with the mechanism. Fit(running="
@@ -220,19 +213,16 @@ class RelativePath:
         """(m,): every mm between a point and the centre adds this to its acceleration (1/s^2)."""
 
     def place(self, k: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """Return (n, 3): position (mm) and angle (rad) of the centre in the other's frame.
+        """Return (n, 3) the centre's place (mm) and the angle (rad) in the other's frame.
 
-        The times are in intervals ``k``.
+        The times lie in intervals ``k``.
         """
         pose = self.mover.within(k, time)
         pose[:, :2] = points(pose, self.centre)
         return relative(pose, self.still.within(k, time))
 
     def bend(self, radius: float) -> float:
-        """Return how far (mm) points within ``radius`` of the centre stray from straight lines.
-
-        This holds in all intervals.
-        """
+        """Return how far (mm) points within ``radius`` of the centre stray from straight lines, in all."""
         return float((self.mover.width**2 / 8 * (self.push + radius * self.spin)).sum())
 
 
@@ -249,7 +239,7 @@ type Axes = dict[frozenset[str], dict[str, np.ndarray]]
 
 
 def axes_of(motion: Motion, parts: Parts, where: Mapping[str, BodyPath]) -> Axes:
-    """Return axes of bodies that share a revolute joint, a rod's end or a common pin."""
+    """Return axes of bodies that a revolute joint or rod's end connects, and of those on a common pin."""
     axes: Axes = {}
     for joint in motion.joints.values():
         if joint.kind != "revolute":

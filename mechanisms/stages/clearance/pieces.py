@@ -23,7 +23,9 @@ _FACTORS = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9,
 
 
 def distinct(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the index of each distinct row of (n, k) float64, and (n,) which of these each row is.
+    """Return distinct rows of (n, k) float64, k up to 4, and (n,) which of these each row is.
+
+    Of each distinct row there is one number.
 
     k is at most 4. Their order follows from the rows alone. -0.0 and 0.0 are alike; no row is like another that is not.
     """
@@ -54,7 +56,7 @@ class Tree:
     """See the file. Facets may be triangles, or segments of an outline; places are in mm."""
 
     def __init__(self, facets: np.ndarray, walls: np.ndarray) -> None:
-        """Keep ``facets`` (n, corners, 3).
+        """``facets`` (n, corners, 3).
 
         ``walls`` (n,): their normals in the plane, x + i y, as long as they matter.
         """
@@ -113,9 +115,9 @@ def _axis_of_walls(walls: np.ndarray) -> complex:
 
 
 def _order(centres: np.ndarray) -> np.ndarray:
-    """Return the order of leaves, halved at the middle of each group's longest side, level by level.
+    """Leaves halved at the middle of each group's longest side, level by level.
 
-    Those that are not a number come last.
+    What is not a number comes last.
     """
     order = np.arange(len(centres))[None]
     while order.shape[1] > 1:
@@ -129,7 +131,10 @@ def _order(centres: np.ndarray) -> np.ndarray:
 
 
 def _halved(t: np.ndarray, longest: float) -> np.ndarray:
-    """Return triangles halved across their longest edge until none exceeds ``longest`` in the plane."""
+    """Return triangles halved across their longest edge until none is longer than ``longest``.
+
+    Lengths are those in the plane.
+    """
     done = []
     while len(t):
         length = np.hypot(*np.moveaxis((np.roll(t, -1, axis=1) - t)[:, :, :2], -1, 0))
@@ -203,7 +208,7 @@ class MeshPiece:
 
     @cached_property
     def upward(self) -> np.ndarray:
-        """Return (n,) the z component of each facet's normal, times twice its area (mm^2).
+        """(n,): the z component of each facet's normal, times twice its area (mm^2).
 
         Corners run counter-clockwise.
         """
@@ -235,16 +240,18 @@ class MeshPiece:
 
 
 def facing(lying: MeshPiece, other: MeshPiece, sign: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the horizontal facets of ``lying``, and the facets of ``other`` that look the other way.
+    """Return the horizontal facets of ``lying`` and the facets of ``other`` that look the other way.
 
-    Facets of ``lying`` look up (``sign`` 1) or down (-1); upright ones are left out: (n, 3, 3) each.
+    The first look up (``sign`` 1) or down (-1); upright ones are left out: (n, 3, 3) each.
     """
     faces = lying.triangles[lying.level & (sign * lying.upward > 0)]
     return faces, other.triangles[sign * other.upward < -UPRIGHT * other.size]
 
 
 def height_between(first: MeshPiece, second: MeshPiece) -> float:
-    """Return the least height (mm) between a horizontal face and what faces it in the other piece.
+    """Return the least height (mm) between a horizontal face of a piece and what faces it in the other.
+
+    The pieces may be anywhere.
 
     They may be anywhere in the motion. It is infinite if nothing does. From a horizontal facet the way to the nearest
     point of another solid is vertical, unless a facet beside it is on that way too; the other end is a corner of a
@@ -296,9 +303,10 @@ class Union:
 
 
 def turned_union(triangles: np.ndarray, centre: np.ndarray, count: int, band: tuple[float, float]) -> Union | None:
-    """Return facets with a part between two distances (mm), and their copies turned by 1 / count.
+    """Return facets between two distances (mm) from ``centre``, with their copies turned by all pitches.
 
-    Distances are from ``centre``, turns of a full turn; None where that makes far more of them.
+    A facet counts with a part of it there; copies are turned by 1 / count of a turn. None where that makes far more of
+    them.
     """
     facets = triangles - np.append(centre, 0.0)
     low, high = _distances(facets)
@@ -316,16 +324,16 @@ def turned_union(triangles: np.ndarray, centre: np.ndarray, count: int, band: tu
 
 
 def extent(triangles: np.ndarray, centre: np.ndarray) -> tuple[float, float]:
-    """Return the least and largest distance (mm) of facets from ``centre`` in the plane.
+    """Return how near facets come to ``centre`` in the plane, and how far from it they reach (mm).
 
-    The least is a lower bound.
+    The first is a lower bound.
     """
     low, high = _distances(triangles - np.append(centre, 0.0))
     return float(low.min(initial=np.inf)), float(high.max(initial=0.0))
 
 
 def order(pieces: list[MeshPiece], body: str, centre: np.ndarray, radius: float) -> int:
-    """Return how many equal turns about ``centre`` leave the wall near a pitch radius (mm) as it is.
+    """Return how many equal turns about ``centre`` keep the upright facets next to a pitch radius (mm).
 
     The wall is the upright facets there. The body's piece with most of these facets counts; 1 where there is none.
     """
@@ -350,10 +358,7 @@ def _repeats(angles: np.ndarray, count: int) -> bool:
 
 
 def _distances(facets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return distances from the origin in the plane: of the nearest point and of the farthest corner.
-
-    There is a row for each facet; the nearest is a lower bound.
-    """
+    """Return distances of facets from the origin in the plane: lower bounds, and farthest corners."""
     away = np.hypot(facets[:, :, 0], facets[:, :, 1])
     sides = np.linalg.norm((np.roll(facets, -1, axis=1) - facets)[:, :, :2], axis=2).max(axis=1)
     return away.min(axis=1) - sides / 2, away.max(axis=1)
@@ -366,7 +371,7 @@ def _turned(facets: np.ndarray, angle: np.ndarray) -> np.ndarray:
 
 
 def _distinct(facets: np.ndarray) -> tuple[np.ndarray, float]:
-    """Return each facet once, with neighbouring corners made one, and how far a corner was moved at most."""
+    """Return each facet once, with corners next to each other made one, and how far a corner moved."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree

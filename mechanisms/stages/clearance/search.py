@@ -1,4 +1,4 @@
-"""Search for the least distance of two meshes over a motion: facets, spans, branch and bound."""
+"""The search for the least distance of two meshes over a motion, by branch and bound."""
 
 from __future__ import annotations
 
@@ -17,7 +17,9 @@ MOST_SPANS = 400
 
 
 class Spans:
-    """A growing table of spans of time, each with the mover's poses and its stray between them.
+    """A table that grows.
+
+    Each span knows where the mover is at its ends and middle, and how far it strays between.
 
     A span knows the poses at its ends and middle. ``first`` and ``last`` are the intervals it lies in; ``off`` (mm) is
     what the true motion may be off there. ``ends`` (n, 3, 3): at start, middle and end the centre's x, y (mm) and the
@@ -51,10 +53,7 @@ class Spans:
         return (self.start[spans] + self.end[spans]) / 2
 
     def stray(self, spans: np.ndarray, reach: np.ndarray) -> np.ndarray:
-        """Return (n,) how far (mm) points stray from their position at the middle, at most.
-
-        The points are within ``reach`` of the centre.
-        """
+        """Return (n,) how far (mm) points within ``reach`` of the centre are from their middle's places."""
         return self.travel[spans] + reach * self.turn[spans]
 
     def halves(self, spans: np.ndarray) -> np.ndarray:
@@ -107,7 +106,9 @@ FLAT = 1e-6
 
 
 def nearest(p: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the distance (n,) of triangles p and q (n, 3, 3), and the vector (n, 3) from p to q.
+    """Return the distance (n,) of triangles p and q (n, 3, 3), and the way (n, 3) from p to q.
+
+    The triangles do not pierce each other.
 
     The triangles do not pierce each other. The nearest points of two triangles lie on two edges, or on a corner and a
     face. For triangles that pierce each other the distance of their edges and corners comes out, and no direction
@@ -126,7 +127,7 @@ def nearest(p: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def separation(direction: np.ndarray, p: np.ndarray, q: np.ndarray) -> np.ndarray:
     """Return (n,) how far q (n, 3, 3) is beyond p along unit directions (n, 3).
 
-    It is below zero where they overlap along it.
+    Below zero where they overlap along it.
     """
     along_p = np.einsum("nki,ni->nk", p, direction)
     along_q = np.einsum("nki,ni->nk", q, direction)
@@ -164,9 +165,9 @@ def _edge_ways(p: np.ndarray, q: np.ndarray) -> np.ndarray:
 
 
 def _corner_ways(p: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """Return (n, 3, 3): vectors from corners of p straight to the plane of q where they meet q.
+    """Return (n, 3, 3): from each corner of p straight to the plane of q where it meets q's inside.
 
-    They are infinite where they miss its inside.
+    Infinite elsewhere.
     """
     normal = normals(q)
     height = _dot(p - q[:, :1], normal[:, None])
@@ -196,9 +197,9 @@ class Overlap:
 
 
 class Sweep:
-    """Two pieces on their paths: one stands still, the other moves relative to it.
+    """Two pieces on their paths.
 
-    The still one is whichever makes the paths bend less.
+    One stands still, the other moves relative to it, whichever bends its paths less.
     """
 
     def __init__(self, first: MeshPiece, second: MeshPiece, path_first: BodyPath, path_second: BodyPath) -> None:
@@ -234,9 +235,9 @@ class Sweep:
         return Overlap(float(times[deepest]), float(depth[deepest]), float(touching[0]), float(touching[-1]))
 
     def depth_at(self, time: float) -> float:
-        """Return how deep (mm) the pieces overlap: the least width of their common part.
+        """Return how deep (mm) the pieces overlap: the least width of what they share, in any direction.
 
-        It is measured in height or in the plane.
+        Directions are those of height and in the plane.
         """
         common = self.still.manifold ^ self._moved(time)
         if common.is_empty():
@@ -281,7 +282,7 @@ MOST = 30_000_000
 
 @dataclass(frozen=True)
 class Least:
-    """The least measured gap (mm), its time, the gap proven over all time, and the number of poses."""
+    """The least gap (mm) that was measured, when, what is proven, and how many poses were measured."""
 
     gap: float
     time: float
@@ -294,7 +295,7 @@ class Least:
 
 
 class Search:
-    """Branch and bound for one pair of pieces.
+    """Branch and bound for one pair.
 
     A candidate is a row (node of the still piece, node of the mover, span).
     """
@@ -303,9 +304,9 @@ class Search:
     most = MOST
 
     def __init__(self, still: Tree, mover: Tree, path: RelativePath, offset: np.ndarray) -> None:
-        """Prepare the search.
+        """``offset`` (2,): the origin of ``still`` in its body's frame (mm).
 
-        ``offset`` (2,): the origin of ``still`` in its body's frame (mm); that of ``mover`` is ``path.centre``.
+        That of ``mover`` is ``path.centre``.
         """
         self.a, self.b = still, mover
         self.offset = np.append(offset, 0.0)
@@ -375,7 +376,10 @@ class Search:
         return np.concatenate([part for part, _ in parts]), np.concatenate([bound for _, bound in parts])
 
     def _sought(self, span: np.ndarray) -> np.ndarray:
-        """Return (n,) the distance (mm) beyond which nothing in these spans is of interest."""
+        """Return (n,) the distance beyond which nothing is of interest.
+
+        What is proven to be this far apart (mm) in these spans is of no more interest.
+        """
         return self.best - self.resolution + np.minimum(self.spans.off[span], FARTHEST_OFF)
 
     def _settle(self, rows: np.ndarray, low: np.ndarray) -> None:
@@ -396,7 +400,7 @@ class Search:
         return np.hypot(np.maximum(np.abs(way) - self.a.radius[a] - self.b.radius[b], 0.0), self._height(a, b))
 
     def _boxes_apart(self, rows: np.ndarray) -> np.ndarray:
-        """Return (n,) how far (mm) the two groups' boxes stay apart over the whole span.
+        """Return (n,) how far (mm) two groups' boxes stay apart over a span, along a side of either.
 
         They are apart along a side of either. A side's direction is that of the still box, or that of the mover's at
         the middle of the span; along it the boxes are apart by the least of what they are at start and end.
@@ -436,9 +440,9 @@ class Search:
         return np.maximum(np.maximum(self.a.low[a] - self.b.high[b], self.b.low[b] - self.a.high[a]), 0.0)
 
     def _measured(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return pairs of facets with their gap and bound, and the halves of spans that need them.
+        """Return halves of spans that pairs of facets still need, with their bounds.
 
-        The gap is at the middle, the bound over the span.
+        The gap at the middle and the bound over the span are entered.
         """
         if not len(rows):
             return rows, np.empty(0)
@@ -457,9 +461,9 @@ class Search:
         return self._halved_spans(rows[open_], np.maximum(low[open_], 0.0))
 
     def _bounded(self, a: np.ndarray, b: np.ndarray, span: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the gap (n,) of pairs of single facets, and their separation (n,) at both ends.
+        """Return two numbers (n,) for each pair of single facets.
 
-        The gap (mm) is at the middle of the span; the separation is along the best direction.
+        The gap (mm) at the middle of the span, and what the best direction separates them by at both its ends.
         """
         p, q = self.a.facets[a] + self.offset, self.b.facets[b]
         first, middle, last = (_placed(q, self.spans.ends[span, k]) for k in range(3))

@@ -1,4 +1,6 @@
-"""The stage ``clearance``: proves that pieces of different bodies never touch in the motion.
+"""The ``clearance`` stage: proves that no two pieces of different bodies touch over the motion.
+
+The motion is that of data.json.
 
 Every pair of pieces of two bodies is settled by the first of these that suffices:
 
@@ -65,7 +67,7 @@ SOURCES = [
 def run(name: str, scale: str = "") -> None:
     """Check mechanism ``name``, or its model at a scale, and write clearance.json.
 
-    Nothing is done if motion and parts are those of the last check.
+    Not so if motion and parts are those of the last check.
 
     Raises UserError naming both pieces, the time, the depth or gap, and the remedy, if two pieces come too near.
     """
@@ -201,9 +203,9 @@ def _clearance_of(
 
 
 def parted_bodies(parts: Parts, motion: Motion) -> list[tuple[str, str]]:
-    """Return pairs of bodies that an event parts by releasing their pin, guide or rod.
+    """Return pairs of bodies that an event parts by releasing a joint; their solids could not part.
 
-    Their solids could not do so.
+    The joint is a pin, guide or rod.
     """
     released = {name: joint for name, joint in motion.joints.items() if joint.released is not None}
     rods = [(name, joint.bodies[1]) for name, joint in released.items() if name in parts.bodies]
@@ -211,7 +213,7 @@ def parted_bodies(parts: Parts, motion: Motion) -> list[tuple[str, str]]:
 
 
 def _parted(parts: Parts, motion: Motion) -> str:
-    """Return a note on bodies that are not compared because an event parts them.
+    """Return words on the bodies that are not compared because an event parts them.
 
     Empty if there are none.
     """
@@ -232,7 +234,10 @@ def _refuse_lost(name: str, pieces: list[MeshPiece], motion: Motion) -> None:
 def _turn(
     first: MeshPiece, second: MeshPiece, axes: Axes, sweep: Sweep, limit: float, reach: float
 ) -> PairClearance | None:
-    """Return the gap at every angle of a pair round their bodies' joint; None if that is not enough."""
+    """Return the gap at every angle of a pair round the joint between its bodies.
+
+    None if that is not enough.
+    """
     from mechanisms.stages.clearance.turn import turn_gap
 
     axis = axes.get(frozenset((first.body, second.body)))
@@ -248,7 +253,10 @@ def _turn(
 
 
 def _slide(first: MeshPiece, second: MeshPiece, slides: Slides, limit: float, reach: float) -> PairClearance | None:
-    """Return the gap at every place along a prismatic joint of a pair; None if that is not enough."""
+    """Return the gap at every place along the line of a prismatic joint between two bodies.
+
+    None if that is not enough.
+    """
     from mechanisms.stages.clearance.slide import slide_gap
 
     slid = slide_gap(first, second, slides, reach)
@@ -266,7 +274,9 @@ def _sliced(
     limit: float,
     reach: float,
 ) -> PairClearance | None:
-    """Return the gap of a pair proven mostly along a line, the rest by the motion.
+    """Return the gap of a pair of which most is proven along a line and the rest by the motion.
+
+    None if that is not enough.
 
     None if that is not enough. Only for a pair that stays near: else the motion alone proves it sooner.
     """

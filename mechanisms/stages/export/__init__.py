@@ -1,1 +1,1 @@
-"""A mechanism and its motion for other programs: tables, drawings, assemblies, simulation models."""
+"""A mechanism and its motion for other programs: tables, drawings, assemblies, simulator models."""

@@ -16,7 +16,10 @@ MARGIN = 0.05
 
 
 def pose_of(solution: Any, time: float) -> tuple[list[Any], dict[str, np.ndarray]]:
-    """Return strokes of the skeleton at the output nearest to a time (s), and traced paths (k, 2) in m."""
+    """Return the skeleton's strokes at the output nearest to a time (s), and paths of traced points.
+
+    The path of each point is (k, 2) in m.
+    """
     from mbsd.drawing.strokes import strokes_of
 
     step = int(np.abs(solution.t - time).argmin())

@@ -89,10 +89,7 @@ def _counts(equations: Any, quantities: Sequence[Quantity]) -> dict[str, int]:
 
 
 def _places(equations: Any) -> dict[str, int]:
-    """Return offsets (bytes) of the arrays that the C sources read and write.
-
-    They count from the start of the memory.
-    """
+    """Return where the arrays of the C sources are, in bytes from the start of the memory."""
     packed, dynamics, run, state = equations.ready.packed, equations.ready.dynamics, equations.run, equations.state
     arrays = {
         "Y": state.y, "DY": state.dy, "LAM": state.lam, "CLOCK": state.clock, "COUNT": state.count,
@@ -177,10 +174,10 @@ def description(
     name: str, token: str, identifier: str, quantities: Sequence[Quantity], span: tuple[float, float, float],
     tolerance: float, early: bool, exchange: bool,
 ) -> str:  # fmt: skip
-    """Return the text of modelDescription.xml.
+    """Return the text. ``span``: start, end and step (s).
 
-    ``span``: start, end and step (s); ``early``: whether a step may end where contacts begin and end; ``exchange``:
-    whether the unit may be integrated by the importer.
+    ``early``: whether a step may end where contacts begin and end; ``exchange``: whether the unit may be integrated by
+    the importer.
     """
     root = Element("fmiModelDescription", fmiVersion="3.0", modelName=name, instantiationToken=token,
                    description=f"{name}, a planar mechanism", generationTool="mbsd",
@@ -277,7 +274,7 @@ DATED = (1980, 1, 1, 0, 0, 0)
 
 
 def fmu(solution: Any) -> tuple[bytes, list[str]]:
-    """Return the archive, and a list of what it leaves out.
+    """Return the archive, and what it leaves out.
 
     Raises UserError without a C compiler or for what needs Python.
     """
@@ -311,7 +308,7 @@ def fmu(solution: Any) -> tuple[bytes, list[str]]:
 def _compiler(name: str) -> str:
     """Return the C compiler: CC, else what the system calls cc, gcc or clang.
 
-    Raises UserError if there is none.
+    Raises UserError where there is none.
     """
     for command in (os.environ.get("CC", ""), "cc", "gcc", "clang"):
         where = command and shutil.which(command)

@@ -70,7 +70,7 @@ def file_of(out: Out, form: str) -> Path:
 def _key(parts: contract.Parts | None, inputs: Inputs, form: str, time: float) -> str:
     """Return the hash of all that a file follows from.
 
-    The key of solids takes them whole, others take their masses alone.
+    That of the solids takes them whole, others take their masses alone.
     """
     solids = parts.provenance.inputs if parts is not None and form == "step" else ""
     return str(key_of(solving.motion_key(parts, inputs), solids, form, time, sources_hash(*SOURCES)))

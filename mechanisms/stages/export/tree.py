@@ -134,9 +134,9 @@ def tree_of(m: Any, poses: dict[str, Pose]) -> Tree:
 
 
 def _spanning(m: Any) -> list[Any]:
-    """Return joints that connect the bodies without a loop.
+    """Return joints that connect what they can without a loop.
 
-    Driven pins come before those that cannot close a loop, other pins last.
+    Pins that are driven come before those that cannot close a loop, other pins last.
     """
     driven = {frozenset(driver.bodies) for driver in m.drivers.values() if driver.kind.angular}
 

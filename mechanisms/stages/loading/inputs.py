@@ -81,10 +81,7 @@ class _Project(Places):
         return file_hash(path)
 
     def module_state(self, name: str) -> str:
-        """Return the hash of a module: of the author's by its meaning, of the program's by its bytes.
-
-        The stages' keys do the same.
-        """
+        """Return the hash: author's modules count by what they mean, the program's by their bytes."""
         if os.path.dirname(name) == "mechanisms" or name.startswith(OURS):
             return self.file_state(name)
         return recalled(("module", self.path_of(name)), lambda: super(_Project, self).module_state(name))
@@ -109,9 +106,9 @@ sources_state, package_state = PROJECT.sources_state, PROJECT.package_state
 
 
 def observed(names: Any) -> Inputs | None:
-    """Return the inputs with these names as they are now; None if ``names`` are none.
+    """Return the inputs with these names, from :meth:`Inputs.names`, as they are now.
 
-    The names are from :meth:`Inputs.names`.
+    None if ``names`` are none.
     """
     return PROJECT.observed(names)
 

@@ -64,7 +64,9 @@ SHOWN = 3
 def worded(
     error: BaseException, lines: Sequence[traceback.FrameSummary], shown: Callable[[Path], str] = Path.as_posix
 ) -> str:
-    """Return ``file:line: the error, in function(): the author's line``.
+    """``file:line: what was raised, in function(): the author's line``.
+
+    ``lines`` are the author's, innermost last.
 
     ``lines`` are the author's, innermost last. For the CAD kernel's exceptions, which say no more than "command not
     done", the operation with its arguments, the line of ``parts()`` that led there and the remedy are added.
@@ -136,7 +138,7 @@ CONSTANTS = ("DURATION", "STEPS")
 
 
 def checked_variants(name: str, module: ModuleType) -> dict[str, dict[str, Any]]:
-    """Return ``VARIANTS`` of a mechanism.py; empty if there are none.
+    """``VARIANTS`` of a mechanism.py; empty where there is none.
 
     Raises UserError naming the variant and the field.
     """
@@ -269,7 +271,7 @@ def recorded[Result](
 
 @contextmanager
 def author_code(name: str) -> Iterator[None]:
-    """Turn an error of the author's code in this block into a UserError with file, line and its text.
+    """Turn what the author's code raises into a UserError that names file, line and the line's text.
 
     A UserError passes as it is. An exception that comes from elsewhere without touching the mechanism's folder
     is a fault of ours and passes too; ``MBSD_TRACEBACK=1`` shows the traceback of either (shared/stage/console.py).
@@ -295,10 +297,7 @@ def author_code(name: str) -> Iterator[None]:
 
 
 def _folder_of(name: str) -> Path:
-    """Return the folder of a mechanism.
-
-    A worker of a cluster has its functions alone; there it is the folder where it would be.
-    """
+    """Return the folder of a mechanism; on a cluster's worker, which lacks it, where it would be."""
     try:
         return mechanism_folder(name) if in_workshop() else MECHANISMS / owner_of(name)
     except UserError:
@@ -324,9 +323,7 @@ class _SourceOnly(SourceFileLoader):
 
 
 def _author_folder(path: str) -> FileFinder:
-    """Find, as a path hook, modules in the author's folders, inside or outside the project.
-
-    Inside, these are folders below a mechanism.
+    """Find, as a path hook, modules in the author's folders below a mechanism or outside the project.
 
     Raises ImportError for the program's own folders, those of installed packages and the standard library.
     """
@@ -358,7 +355,7 @@ def _shown(path: Path) -> str:
 
 
 class _Machines(MetaPathFinder):
-    """A finder of the mechanisms in a user's own folder, which may be packages, files or that folder."""
+    """Finds machines of a user's own folder as packages, though they may be files or that folder."""
 
     def find_spec(self, fullname: str, path: Any, target: Any = None) -> ModuleSpec | None:
         top, _, rest = fullname.partition(".")

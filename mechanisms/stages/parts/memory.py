@@ -1,4 +1,4 @@
-"""The memory of the stage: Params used by parts.py, their values, files it read, and kept pieces."""
+"""The memory of the stage: Params that parts.py used, files that it read, and pieces kept."""
 
 from __future__ import annotations
 
@@ -31,10 +31,7 @@ from shared.stage.stages import Stage, key_of
 
 
 def traced(params: Any) -> tuple[Any, set[str]]:
-    """Return a stand-in for a frozen dataclass instance, and the set of names that are read from it.
-
-    The set grows as they are read.
-    """
+    """Return a stand-in for a frozen dataclass instance, and the set that collects names read from it."""
     kind = type(params)
     seen: set[str] = set()
 
@@ -60,7 +57,9 @@ def fields_of(params: Any) -> dict[str, Any]:
 
 
 def plain_text(value: Any) -> str | None:
-    """Return the text of a value, or None for a function or an object of a class that is no dataclass.
+    """Return the text, or None for a value that has none.
+
+    Functions have none, and objects of a class that is no dataclass.
 
     ``repr`` would not do: it shortens arrays and shows addresses of objects.
     """
@@ -97,9 +96,9 @@ def _joined(kind: str, values: list[Any]) -> str | None:
 
 
 def only_annotates(files: Iterable[tuple[Path, str]], module: str) -> bool:
-    """Return True if these files use nothing of ``module`` but ``Params``, and that in annotations.
+    """Return True if these files use of ``module`` nothing but ``Params``, and that in annotations.
 
-    Each file counts with its package.
+    Each file comes with its package.
     """
     return all(_file_only_annotates(file, package, module) for file, package in files)
 
@@ -179,9 +178,9 @@ def refuse_again(out: Out, key_of: KeyOf) -> None:
 
 
 def is_worth_it(error: UserError, seconds: float) -> bool:
-    """Return True if a rejection took long to find and would be found again.
+    """Return True if a refusal took long to find, and will not be gone next time.
 
-    One of the disk or of another process may be gone next time.
+    One of the disk or of another process may be.
     """
     passing = error.code == BUSY or isinstance(error.__cause__, OSError) or OF_THE_DISK in str(error)
     return seconds >= LONG and not passing

@@ -92,7 +92,7 @@ def _edges(mesh: Any) -> str:
 
 
 def mass_of(solid: Any, density: float, along: bool = False) -> Mass:
-    """Return the mass properties (kg, m, kg m^2, m^3) of a ``cadquery.Shape``.
+    """Return mass properties (kg, m, kg m^2, m^3) of a ``cadquery.Shape`` in mm; ``density`` in kg/m^3.
 
     The shape is in mm, ``density`` in kg/m^3. The centre of mass is in the body's frame; the inertia is about the axis
     through it, along z. ``along``: with z of the centre of mass and the products of inertia, which count where z is
@@ -136,10 +136,7 @@ def combined(masses: Iterable[Mass]) -> Mass:
 
 
 def _along(pieces: list[Mass], mass: float, com: tuple[float, float]) -> dict[str, Any]:
-    """Return z of the common centre of mass, and the products of inertia about it.
-
-    None unless all pieces have them.
-    """
+    """Return z of the common centre of mass and products of inertia about it, if all pieces have them."""
     known = [(piece, piece.z, piece.products) for piece in pieces if piece.z is not None and piece.products is not None]
     if len(known) < len(pieces):
         return {}

@@ -1,4 +1,4 @@
-"""The stage ``parts``: turns mechanisms/<name>/parts.py, or the model alone, into solids.
+"""The stage ``parts``: a parts.py, or the model alone, becomes STL, STEP and parts.json.
 
 The solids are STL and STEP files, which parts.json describes. It runs again only if something changed that the solids
 follow from: parts.py and what it imports or reads, the part library, the densities, CadQuery, a parameter that
@@ -61,9 +61,7 @@ PACKAGES = ("cadquery", "cadquery-ocp", "numpy", "python-sat", "trimesh")
 
 
 def run(name: str, scale: str = "", anyway: bool = False) -> None:
-    """Build the parts of mechanism ``name``, or of its model at a scale, if anything has changed.
-
-    What counts is anything they follow from.
+    """Make the parts of mechanism ``name``, or of its model at a scale, if their inputs have changed.
 
     Raises UserError naming the solid, the number and the remedy if a solid is refused; what was there stays. A refusal
     that took long is remembered until something changes, or they are to be made ``anyway``.
@@ -197,7 +195,10 @@ def _described(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Re
 
 
 def _of_cluster(out: Out, given: Any, wish: _Wish, recorder: Recorder) -> _Result | None:
-    """Return the parts that a worker of the cluster built; None where they do not match the files here."""
+    """Return the parts that a worker of the cluster made.
+
+    None where they did not follow from what is here.
+    """
     from mechanisms.stages.parts.on_cluster.dealt import made_elsewhere
 
     name, known = out.name, observed(_notes(out).get("inputs")) or Inputs()
@@ -217,7 +218,7 @@ def _of_cluster(out: Out, given: Any, wish: _Wish, recorder: Recorder) -> _Resul
 
 
 def are_current(name: str) -> bool:
-    """Return True if the parts on disk match the mechanism as it is.
+    """Return True if the parts that are there are those of the mechanism as it is.
 
     Raises UserError for one without Params.
     """
@@ -250,9 +251,9 @@ def are_outdated(name: str) -> bool:
 
 
 def run_or_none(name: str) -> None:
-    """Return the parts, or None, reported, for a mechanism without parts.py that has none.
+    """Run the stage for what needs no parts, as motion and plots.
 
-    Stages that need no parts use it: motion and plots.
+    Where a mechanism without a parts.py has none, that is reported.
     """
     out = Out(name)
     try:
@@ -329,7 +330,9 @@ def _build(name: str, given: Any, seen: _Seen) -> dict[str, list[Any]]:
 
 
 def _write(out: Out, files: Mapping[str, bytes], document: Parts) -> int:
-    """Write changed files, remove files that no solid makes any more, and return the number written.
+    """Write what differs from what is there, and remove what no solid makes any more.
+
+    Returns the number of files written.
 
     parts.json is written last, so it never names a file that is not there.
     """
@@ -363,7 +366,7 @@ def _summary(name: str, document: Parts, count: int) -> str:
 
 
 def current_parts(out: Out, stage: str) -> Parts | None:
-    """Return the parts on disk, unless their sources have changed since; the error names ``stage``."""
+    """Return the parts that are there, unless they are outdated, which ``stage`` says."""
 
     if not out.parts.is_file():
         return None

@@ -26,7 +26,7 @@ DISTINCT = 1e-7
 
 @dataclass(frozen=True)
 class Place:
-    """Place of a rectangle: its corner of least x and y on its plate (mm), and a turn by 90 degrees."""
+    """Where a rectangle lies: its corner of least x and y (mm), and True if it is turned by 90 degrees."""
 
     plate: int
     x: float
@@ -58,10 +58,7 @@ def packed(rectangles: Sequence[tuple[float, float]], bed: tuple[float, float], 
 
 
 def _fullest(sizes: np.ndarray, room: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return bounds (m, 2, 2) of the rectangles of the fullest plate, and which these are.
-
-    Several orders are tried.
-    """
+    """Return bounds (m, 2, 2) of the rectangles that fit a plate in the best order, and which they are."""
     from trimesh.path.packing import rectangles_single
 
     random, areas = np.random.default_rng(0), np.prod(sizes, axis=1)
@@ -80,9 +77,7 @@ LAYER = "CUT"
 
 
 def section(step: Path, piece: Laid, height: float) -> Any:
-    """Return a ``cadquery.Workplane`` with the solid's section at ``height``, moved to z = 0.
-
-    ``height`` is above the bed, on which the solid is laid.
+    """Return a ``cadquery.Workplane`` of the section at ``height`` above the bed, moved to z = 0.
 
     Raises UserError if the file cannot be read.
     """
@@ -100,7 +95,7 @@ def section(step: Path, piece: Laid, height: float) -> Any:
 
 
 def dxf(cut: Any, thickness: float) -> bytes:
-    """Return the DXF (R2013) of a section; its layer gives the thickness of the sheet.
+    """Return the DXF (R2013) of a section; its layer says how thick the sheet is.
 
     No times and no random marks are in it.
     """
@@ -162,10 +157,7 @@ def stl(plate: Sequence[Placed]) -> bytes:
 
 
 def three_mf(title: str, plate: Sequence[Placed]) -> bytes:
-    """Return a 3MF (mm) with an object for each kind of piece and an item for each piece.
-
-    Both have names and colours.
-    """
+    """Return a 3MF (mm): an object for each kind of piece, an item for each piece, names and colours."""
     import lib3mf
 
     model: Any = lib3mf.get_wrapper().CreateModel()

@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from shared.contract import Provenance
+from shared.contract import BodyParts, Parts, Provenance
 from shared.contract.materials import MATERIALS
 from shared.contract.skeleton import Carried, CarriedName, Carrier, End, Moving, Name, Pose, Skeleton, Stroke
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
     from mbsd.drawing.moving_skeleton import Moving as Drawn
-    from shared.contract import BodyParts, Parts
 
 
 # The one table of body colours: by the material of each body's main piece, or by its role where there are no parts.

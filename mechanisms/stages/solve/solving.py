@@ -63,9 +63,9 @@ def model_of(name: str) -> tuple[Mechanism, Any, Any]:
 
 
 def motion_of(name: str, module: Any, m: Mechanism, p: Any) -> Solution:
-    """Return the motion of ``m`` as mechanism.py specifies it, and print the solver's warnings.
+    """Return the motion of ``m`` as mechanism.py asks for it. Raises UserError.
 
-    Raises UserError.
+    Warnings of the solver become lines.
     """
     from mbsd import MechanismError
     from mbsd.results.solution import Solution
@@ -116,10 +116,7 @@ def _natural(name: str, module: Any, m: Mechanism) -> Solution:
 
 
 def _steps_of(m: Mechanism, duration: float | None) -> int:
-    """Return steps of a sweep: so many for each turn of its drivers.
-
-    Without a duration they cover the whole period.
-    """
+    """Return steps of a sweep: so many for each turn of its drivers, by default of the whole period."""
     from mbsd.kinematics.period import common_period
 
     whole, common = duration or m.period(), common_period(m.drivers.values())
@@ -129,7 +126,7 @@ def _steps_of(m: Mechanism, duration: float | None) -> int:
 
 
 def _positive(name: str, module: Any, constant: str, form: str) -> float | None:
-    """Return a constant beside build(), or None if there is none.
+    """Return a constant beside build(), or None where there is none.
 
     Raises UserError unless it is a positive number.
     """
@@ -151,7 +148,10 @@ def _refuse_other(name: str, m: Mechanism, solved: Any) -> None:
 
 
 def _tell_blurred_impacts(name: str, solution: Solution) -> bool:
-    """Warn that impacts lie between rows, where plots and films show them smooth; True if there are any."""
+    """Say that impacts lie between rows, and return True if they do.
+
+    Plots and films would show them as something smooth.
+    """
     shared = {float(time) for time in solution.t[1:][solution.t[1:] == solution.t[:-1]]}
     lost = [event for event in solution.events if event.what == "impact" and event.time not in shared]
     if lost:
@@ -165,7 +165,7 @@ def _tell_blurred_impacts(name: str, solution: Solution) -> bool:
 
 
 def _tell_long_steps(name: str, module: Any, solution: Solution) -> None:
-    """Warn that rows of a simulation are too far apart for fast parts, so that proofs may fail there."""
+    """Say that rows of a simulation are too far apart for fast motion, so that proofs may fail there."""
 
     long = [] if solution.work is None else doubted_steps(solution)
     if len(long):
@@ -237,10 +237,7 @@ MOST_ROWS = 20_000
 
 
 def simulated_closely(m: Mechanism, duration: float, steps: int) -> Solution:
-    """Simulate with rows at events, in ``steps`` equal steps and more where the motion needs them.
-
-    Both rows of an event are kept.
-    """
+    """Run ``m.simulate`` with both rows of events, in ``steps`` equal steps and more where needed."""
     times = np.linspace(0.0, duration, steps + 1)
     solution = m.simulate(times=times, event_rows=True)
     for _ in range(ROUNDS):
@@ -268,7 +265,7 @@ def swept_closely(m: Mechanism, times: np.ndarray) -> Solution:
 
 
 def closer_times(m: Mechanism, times: np.ndarray) -> np.ndarray:
-    """Return times (s) with more of them where a sweep needs it: where a link flies past a dead point."""
+    """Return times (s) with more where the sweep needs them: where a link flies past a dead point."""
     for _ in range(2 * ROUNDS):
         middles = (times[:-1] + times[1:]) / 2
         finer = m.sweep(times=np.sort(np.concatenate([times, middles])), event_rows=True)
@@ -284,7 +281,9 @@ def closer_times(m: Mechanism, times: np.ndarray) -> np.ndarray:
 
 
 def _inner(times: np.ndarray, count: int, coarse: np.ndarray, far: np.ndarray) -> np.ndarray:
-    """Return times (s) that divide the steps after rows ``coarse`` of ``times``.
+    """Return times (s) that divide the steps after rows ``coarse``.
+
+    Of too many, those that are ``far`` most are divided.
 
     If they are too many, those with the largest ``far`` remain. ``count``: how many times there are already.
     """
@@ -295,20 +294,14 @@ def _inner(times: np.ndarray, count: int, coarse: np.ndarray, far: np.ndarray) -
 
 
 def coarse_steps(solution: Solution) -> tuple[np.ndarray, np.ndarray]:
-    """Return rows after which the quintic leaves the motion or is doubtful, and how far.
-
-    1 is the limit.
-    """
+    """Return rows after which the quintic leaves the motion, and how far, 1 being what may be."""
     steps = _steps(solution)
     far = _far(solution, steps, steps + 1, solution.at((solution.t[steps] + solution.t[steps + 1]) / 2).q)
     return steps[far > 1.0], far[far > 1.0]
 
 
 def doubted_steps(solution: Solution) -> np.ndarray:
-    """Return rows after which the proof of clearance doubts the motion.
-
-    Only the rows themselves are looked at.
-    """
+    """Return rows after which the proof of clearance doubts the motion, as far as rows show it."""
     steps = _steps(solution)
     return steps[_doubt(solution, steps, steps + 1) > 1.0]
 
@@ -320,7 +313,9 @@ def _steps(solution: Solution) -> np.ndarray:
 
 
 def _far(solution: Solution, first: np.ndarray, last: np.ndarray, middle: np.ndarray) -> np.ndarray:
-    """Return (n,) how far the quintic between two rows is from the motion, in parts of the limit.
+    """Return (n,) how far the quintic between two rows is from the motion, or doubted.
+
+    ``middle`` (n, bodies, 3) is half way.
 
     ``middle`` (n, bodies, 3) is the motion half way; also counted is how far it is in doubt.
     """
@@ -332,7 +327,7 @@ def _far(solution: Solution, first: np.ndarray, last: np.ndarray, middle: np.nda
 
 
 def _doubt(solution: Solution, first: np.ndarray, last: np.ndarray) -> np.ndarray:
-    """Return (n,) how far the quintic between two rows is from the cubic, in parts of the doubt allowed."""
+    """Return (n,) how far the quintic is from the cubic between rows, in parts of what may be doubted."""
     h, size = (solution.t[last] - solution.t[first])[:, None, None], solution.packed.size
     rise = 0.3 * (solution.q[last] - solution.q[first])
     v0, v1 = h * solution.v[first], h * solution.v[last]

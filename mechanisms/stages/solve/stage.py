@@ -1,4 +1,4 @@
-"""The stage ``solve``: mechanism.py and the masses of parts.json to data.json and skeleton.json."""
+"""The stage ``solve``: mechanism.py and masses of parts.json become data.json and skeleton.json."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def _is_fresh(out: Out, parts: contract.Parts | None) -> bool:
 def motion_key(parts: contract.Parts | None, inputs: Inputs) -> str:
     """Return the hash of all that the motion follows from.
 
-    ``inputs``: the files that mechanism.py is made of and reads.
+    ``inputs``: what mechanism.py is made of, and what it reads.
     """
     masses = parts and {body: (solids.mass, solids.z, main_material(solids)) for body, solids in parts.bodies.items()}
     sources = sources_hash(*SOURCES), sources_state("mbsd"), sources_state("mbsd/drawing")
@@ -89,7 +89,9 @@ def motion_key(parts: contract.Parts | None, inputs: Inputs) -> str:
 
 
 def solve(name: str, parts: contract.Parts | None) -> tuple[Solution, dict[str, Source]]:
-    """Build the mechanism, give it masses, print their sources, and solve its motion.
+    """Build the mechanism, give it masses, say where those are from, and solve its motion.
+
+    Raises UserError.
 
     Raises UserError. Also returns where the mass of each body is from.
     """

@@ -54,8 +54,7 @@ def drive(
 
 def made_of(m: Mechanism) -> tuple[Automatic, Rack, Wheel]:
     made = Automatic(m, m.sweep(steps=40))
-    features = made.layout.features
-    return made, next(f for f in features if isinstance(f, Rack)), next(f for f in features if isinstance(f, Wheel))
+    return made, made.layout.of(Rack)[0], made.layout.of(Wheel)[0]
 
 
 @settings(max_examples=10, deadline=None)

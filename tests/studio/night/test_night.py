@@ -12,9 +12,9 @@ from render.presets import PRESETS, preset_named
 from shared.stage.errors import UserError
 from studio.night.plan.options import Options, options
 from studio.night.plan.steps import STEPS, command
-from tests.running.processes import working_for
+from tests.running.processes import until, working_for
 from tests.studio.command.plans import STAGES, planned
-from tests.studio.night.nights import Night, finished, until
+from tests.studio.night.nights import Night, finished
 
 
 @pytest.fixture

@@ -5,34 +5,27 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 
+from mbsd import Mechanism, Solution
+from mbsd.model.joint import Joint
 from mbsd.model.teeth import with_radii
-from mechanisms.stages.automatic.layout.items import Item, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import build
+from mechanisms.stages.automatic.layout.items import Heights, Item, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Plan, build
 from mechanisms.stages.automatic.layout.planar import Rounded
 from mechanisms.stages.automatic.layout.sizes import Extent, Sizes, extent
 from mechanisms.stages.automatic.wheels.wheels import Wheel, build_wheel, shape_of, with_hub
 from shared.contract.geometry import BeltPath
 from shared.shapes.build import extruded, turned
 from shared.shapes.involute import wire
+from shared.shapes.link import Eye
 from shared.shapes.outline import circle
 from shared.shapes.solid import Hold, Solid, placed
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism, Solution
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-    from shared.shapes.link import Eye
-
 
 # Pulleys: wheels with a rim for a round belt, or for a chain where the joint has teeth; what the belt needs of room.
 #
@@ -118,8 +111,9 @@ SEAT = 5
 
 @shape_of.register(Pulley)
 def pulley_disc(pulley: Pulley, thickness: float, eyes: list[tuple[float, float, Eye]]) -> tuple[cq.Workplane, int]:
-    """Return the disc of a pulley from z = 0 up, with its eyes, and its number of through holes. One without windows
-    has small holes, so that one sees it turn.
+    """Return the disc of a pulley from z = 0 up, with its eyes, and its number of through holes.
+
+    One without windows has small holes, so that one sees it turn.
     """
     shape, holes = with_hub(extruded(circle(0, 0, pulley.root), thickness), pulley.root, thickness, eyes)
     room = pulley.root - Sizes.hardware
@@ -164,8 +158,9 @@ def rim_of(pulley: Pulley, thickness: float, z: float, seat: float) -> Solid:
 
 
 def sprocket_outline(teeth: int, radius: float, tooth: float, phase: float) -> np.ndarray:
-    """Return (n, 2): round seats for rollers on the pitch circle, the first at the angle ``phase``, and teeth between
-    them.
+    """Return (n, 2) an outline: round seats for rollers on the pitch circle, and teeth between them.
+
+    The first seat is at the angle ``phase``.
     """
     seat, pitch = 0.95 * tooth, 2 * math.pi / teeth
     turn = np.linspace(-100.0, 100.0, SEAT) * math.pi / 180 + math.pi  # about the roller, inner half
@@ -215,7 +210,10 @@ def _pulley(joint: Joint, end: int, layout: Layout) -> Pulley:
 
 
 def _fit(m: Mechanism, joint: Joint, pair: tuple[Pulley, Pulley], layout: Layout) -> None:
-    """Seats of both sprockets where the chain's rollers are at the start. Raises UserError where pulleys overlap."""
+    """Seats of both sprockets where the chain's rollers are at the start.
+
+    Raises UserError where pulleys overlap.
+    """
     places = [layout.seen(pulley.body, (pulley.x, pulley.y), "ground")[0] for pulley in pair]
     first, second = pair
     way = places[1] - places[0]

@@ -178,7 +178,7 @@ class Function:
 def coordinates(joints: Sequence[Any], loose: Sequence[str], size: float) -> dict[Key, Function]:
     """Return coordinates of joints, and of bodies that no joint with a coordinate holds.
 
-    They are free of dimension.
+    Free of dimension.
     """
     out: dict[Key, Function] = {}
     for joint in joints:

@@ -130,7 +130,7 @@ def _refuse_other_notes(name: str, fields: Mapping[str, Any], own_file: str) -> 
 
 
 def _refuse_other_solids(name: str, made: WorkerParts) -> None:
-    """Have a process read all meshes and solids, so that a crash of the CAD kernel ends nothing else."""
+    """Have a process read all meshes and solids: if the CAD kernel crashes, nothing else ends."""
     with tempfile.TemporaryDirectory(prefix="mbsd-parts-") as folder:
         (Path(folder) / "parts.json").write_bytes(made.document)
         for file, content in made.files.items():

@@ -170,7 +170,7 @@ class Order(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def collected(name: str, read: Iterable[str] = ()) -> dict[str, bytes]:
-    """Return the authors' files that go along for the mechanism or variant ``name``, by name.
+    """Return the authors' files, by the name that inputs have, for the mechanism or variant ``name``.
 
     The names are those that inputs have. ``read`` are names of files of a user's own folder that the parts were made
     from before. One that cannot be read, or goes meanwhile, stays here; that it is missing is reported from here.
@@ -215,7 +215,7 @@ def _is_hidden(path: Path) -> bool:
 
 
 def _imported(waiting: list[tuple[Path, str]]) -> Iterator[Path]:
-    """Return these files with their packages, and the files of the user's folder that they import."""
+    """Yield these files, each with its package, and those of the user's folder that they import."""
     seen: set[Path] = set()
     while waiting:
         file, package = waiting.pop()

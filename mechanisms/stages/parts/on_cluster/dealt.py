@@ -1,4 +1,7 @@
-"""Parts of a mechanism built by workers of the cluster; what none of them can build is left to us."""
+"""The parts of a mechanism, asked of the cluster's workers.
+
+What none of them can answer is left to this machine.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +30,9 @@ GRACE = 120.0
 
 
 def made_elsewhere(name: str, scale: Scale | None, machine: bytes, before: Iterable[str]) -> WorkerParts | None:
-    """Return the parts of ``name`` as a worker built them; None where the worker rejected them.
+    """Return the parts of ``name`` as a worker made them.
+
+    None where the stage there refused, which is reported from here.
 
     The rejection is reported from here. ``machine`` is the parts.json of the machine itself, where its model at
     ``scale`` needs it; ``before`` are names of files from which the parts were made before. Raises UserError if no

@@ -1,4 +1,4 @@
-"""Check of solids that another computer has built, in a process of its own.
+"""``python -m mechanisms.stages.parts.on_cluster.solids_check FOLDER``: reads solids from elsewhere.
 
 ``python -m mechanisms.stages.parts.on_cluster.solids_check FOLDER`` reads them. It ends with code 1 and a sentence on
 stderr unless every mesh and every STEP file beside parts.json is whole, is the same closed solid, and has the mass that

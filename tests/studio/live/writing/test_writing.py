@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -10,7 +9,7 @@ import pytest
 from studio.live import writing
 from studio.live.writing import replace
 from tests.studio.live.arm import ARM
-from tests.studio.live.served import Page, Served, served
+from tests.studio.live.served import Page, Served, live_server
 
 FIELDS = "    length: float = 0.2  # of the crank\n    speed: float = tau\n"
 DECIDES = {
@@ -27,12 +26,7 @@ DECIDES = {
 """Fields of Params, and what stands after the class."""
 
 
-@pytest.fixture(scope="module")
-def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    with served(tmp_path_factory.mktemp("written") / "mechanisms", "arm", ARM, 30.0) as server:
-        with server.page() as page:
-            page.hear("motion", "state", wanted=lambda header: bool(header["payload"]))
-        yield server
+live = live_server("written")
 
 
 def file_of(live: Served) -> Path:

@@ -132,7 +132,9 @@ def test_gears_and_closed_loops_stay_meshed() -> None:
 def test_a_pose_that_is_not_known_is_refused() -> None:
     m = Mechanism("loose")
     rod, slide, load = m.bar("rod", 1.0), m.body("slide"), m.body("load")
-    with pytest.raises(ModelError, match=r"loose: rod\.at_world: .*its place and angle are free\. .*=\(x, y, degrees\)"):
+    with pytest.raises(
+        ModelError, match=r"loose: rod\.at_world: .*its place and angle are free\. .*=\(x, y, degrees\)"
+    ):
         rod.at_world(0, 0)
     m.revolute("A", m.ground.origin, rod.start)
     m.prismatic("rail", m.ground.origin, slide.origin)

@@ -1,4 +1,4 @@
-"""Rack-and-pinion steering: the pinion pushes the rack, two tie rods turn the front wheels about their kingpins.
+"""Rack-and-pinion steering: the rack moves two tie rods that turn the wheels about their kingpins.
 The inner wheel turns further than the outer one: at 32 degrees the outer is within 0.5 degrees of Ackermann's condition
 cot(outer) - cot(inner) = track / wheelbase, by which all wheels roll about one point.
 """

@@ -1,4 +1,4 @@
-"""A scotch yoke: the crank's pin runs in a slot across the yoke, so the yoke moves exactly as a cosine.
+"""A scotch yoke: the crank's pin runs in a slot across the yoke, which moves exactly as a cosine.
 With a spring against the yoke that is in tune with the crank (variant spring), the motor need not shake the yoke any
 more: the spring does. Without a motor (free) a harder spring speeds the crank up twice a turn and slows it down again.
 """

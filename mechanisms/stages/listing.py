@@ -27,8 +27,8 @@ class _Solved(msgspec.Struct):
 def run(names: bool = False, as_json: bool = False) -> None:
     """Print a line for each mechanism: name, degrees of freedom, first line of its docstring, files.
 
-    Results that are older than the files or results that they were made of are named apart. No author's code is run, so
-    of parts it is not known.
+    The freedom is known once it is solved, the title is the first line of its docstring. Results that are older than
+    the files or results that they were made of are named apart. No author's code is run, so of parts it is not known.
 
     ``names``: names alone, of variants as well; ``as_json``: all of it for other programs. Raises UserError if there
     are none, but for other programs.

@@ -1,5 +1,5 @@
-"""A table on two equal swings: however far it swings out, it stays level, since the swings are a parallelogram.
-So table and swings move as one pendulum of the swings' length.
+"""A table on two equal swings: they are a parallelogram, so it stays level however far it swings.
+Table and swings move as one pendulum of the swings' length.
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ VARIANTS = {"undamped": {"damping": 0.0, "start": 30.0}}
 
 @dataclass(frozen=True)
 class Params:
-    """Length of the swings and of the table (m), mass at each end of the table (kg), drag there (N s/m), start."""
+    """Lengths of swings and table (m), mass at each end of the table (kg), drag there (N s/m), start."""
 
     swing: float = 0.16
     table: float = 0.24

@@ -78,7 +78,7 @@ def build(p: Params) -> Mechanism:
 
 
 def _balancer(m: Mechanism, p: Params, tail: float) -> None:
-    """A shaft beside the crank's that an equal gear turns backwards; its weight starts opposite to the crank pin."""
+    """Add a shaft that an equal gear turns backwards; its weight starts opposite to the crank pin."""
     mass = p.wheel_mass + p.balancer_mass
     centre = p.balancer_mass * p.arm / mass
     radius = p.teeth * p.module / 2

@@ -15,7 +15,7 @@ from mbsd.model.body import Body
 from tools.models import four_bars
 
 A, B, C, D = (0.0, 0.0), (0.03, 0.04), (0.15, 0.10), (0.12, 0.0)
-"""Of a four-bar as drawn (m)."""
+"""Pins of a four-bar as drawn (m)."""
 
 
 def drawn(frames: dict[str, tuple[float, float, float]]) -> Mechanism:
@@ -137,7 +137,7 @@ def test_a_pose_that_is_not_known_is_refused() -> None:
     m.revolute("A", m.ground.origin, rod.start)
     m.prismatic("rail", m.ground.origin, slide.origin)
     m.revolute("B", rod.end, load.origin)
-    with pytest.raises(ModelError, match=r"'rod' is at the start is not known yet, its angle is free; .*rod=degrees\)"):
+    with pytest.raises(ModelError, match=r"start of 'rod' is not known yet: its angle is free; .*rod=degrees\)"):
         rod.at_world(0, 0)
     with pytest.raises(ModelError, match=r"'slide' .*its place is free; .* start_near\(slide=\(x, y, degrees\)\)"):
         slide.at_world(0, 0)

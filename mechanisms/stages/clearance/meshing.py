@@ -60,9 +60,10 @@ class Rolling:
 def rolling(path: RelativePath, about: np.ndarray, ratio: float, reach: float) -> Rolling | None:
     """Return ideal rolling about ``about`` (mm, first body's frame) with that ratio, next to the motion.
 
-    ``off`` holds for points within ``reach`` (mm) of the second body's centre and for all time: at PARTS times in
-    each interval it is looked at, and between them a function is within h^2 / 8 max |f''| of the larger of its ends.
-    None where the centre passes through ``about``, or samples jump.
+    It rolls about the point ``about`` (mm, frame of the first body). ``off`` holds for points within ``reach`` (mm) of
+    the second body's centre and for all time: at PARTS times in each interval it is looked at, and between them a
+    function is within h^2 / 8 max |f''| of the larger of its ends. None where the centre passes through ``about``, or
+    samples jump.
     """
     mover = path.mover
     if len(mover.first) + 1 != len(mover.time):
@@ -132,7 +133,7 @@ class Gears:
 
 
 type Meshes = dict[frozenset[str], list[Gears]]
-"""By pair of bodies."""
+"""Gear pairs by pair of bodies."""
 
 
 def meshes(motion: Motion, pieces: list[MeshPiece]) -> Meshes:
@@ -236,7 +237,7 @@ class Band:
     piece: MeshPiece
     path: BodyPath
     axes: dict[str, tuple[np.ndarray, np.ndarray]]
-    """By body of a pulley: the pulley's centre in the band's frame and in the body's (mm)."""
+    """Centres by body of a pulley: in the band's frame and in the body's (mm)."""
     own: frozenset[tuple[str, str]]
     """Body and name of the pieces that hold the belt: its pulleys, which it touches."""
 

@@ -219,7 +219,8 @@ def least_by_outlines(sweep: Sweep, gap: float, time: float, poses: int) -> Leas
 def proven_by_outlines(sweep: Sweep, gap: float, time: float) -> float:
     """Return how far (mm) outlines prove the pieces apart, of the ``gap`` measured at ``time``.
 
-    Walls that lean or bulge bring the outlines nearer than the pieces, so that it may be much less than the least gap.
+    ``gap`` was measured at ``time``. Walls that lean or bulge bring the outlines nearer than the pieces, so that it may
+    be much less than the least gap.
     """
     both = _outlines(sweep, gap)
     if both is None:

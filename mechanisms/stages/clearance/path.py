@@ -61,9 +61,9 @@ def what_shrinks(scale: Scale) -> str:
     """Return the end of a refusal at ``scale``: why a parts.py that fits its machine may not fit here."""
     running = Fit().running
     return (
-        f"what a parts.py gives in millimetres, clearances too, shrinks with the machine: Fit(running="
-        f"{running / scale.ratio:.3g}) leaves {running:g} mm at {scale}, and fit_at_scale(pin) of mechanisms.automatic "
-        "chooses for any scale; without a parts.py pins and fits are chosen for the scale"
+        f"millimetres in a parts.py, clearances too, shrink with the mechanism. Fit(running="
+        f"{running / scale.ratio:.3g}) leaves {running:g} mm at {scale}; fit_at_scale(pin) of mechanisms.automatic "
+        "chooses for any scale. Without a parts.py, pins and fits are chosen for the scale"
     )
 
 
@@ -235,7 +235,7 @@ def _largest(control: np.ndarray, width: np.ndarray, order: int) -> np.ndarray:
 # Axes about which two bodies turn against each other, however they move.
 
 type Axes = dict[frozenset[str], dict[str, np.ndarray]]
-"""By pair of bodies: the axis of their joint, as a point (mm) in the frame of either."""
+"""Axes by pair of bodies: the axis of their joint, as a point (mm) in the frame of either."""
 
 
 def axes_of(motion: Motion, parts: Parts, where: Mapping[str, BodyPath]) -> Axes:

@@ -27,7 +27,7 @@ def distinct(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
     Of each distinct row there is one number.
 
-    Their order follows from the rows alone. -0.0 and 0.0 are alike; no row is like another that is not.
+    k is at most 4. Their order follows from the rows alone. -0.0 and 0.0 are alike; no row is like another that is not.
     """
     bits = np.ascontiguousarray(rows + 0.0).view(np.uint64)
     mixed = np.zeros(len(bits), dtype=np.uint64)
@@ -79,7 +79,7 @@ class Tree:
             self.radius[nodes] = np.fmax.reduce(away, axis=1)
             self.low[nodes], self.high[nodes] = low[:, 2], high[:, 2]
         self.reach = np.hypot(*self.centre.T) + self.radius
-        """By node: how far its facets reach from the origin (mm)."""
+        """Reach of the facets of each node from the origin (mm)."""
         self.axis = _axis_of_walls(walls)
         """The unit direction of the boxes' first side, x + i y; the second one is across it."""
         c, s = self.axis.real, self.axis.imag
@@ -253,8 +253,9 @@ def height_between(first: MeshPiece, second: MeshPiece) -> float:
 
     The pieces may be anywhere.
 
-    Infinite if nothing does. From a horizontal facet the way to the nearest point of another solid is vertical, unless
-    a facet beside it is on that way too; the other end is a corner of a facet that faces it.
+    They may be anywhere in the motion. It is infinite if nothing does. From a horizontal facet the way to the nearest
+    point of another solid is vertical, unless a facet beside it is on that way too; the other end is a corner of a
+    facet that faces it.
     """
     least = np.inf
     for a, b in ((first, second), (second, first)):
@@ -334,7 +335,7 @@ def extent(triangles: np.ndarray, centre: np.ndarray) -> tuple[float, float]:
 def order(pieces: list[MeshPiece], body: str, centre: np.ndarray, radius: float) -> int:
     """Return how many equal turns about ``centre`` keep the upright facets next to a pitch radius (mm).
 
-    The body's piece with most of these facets counts; 1 where there is none.
+    The wall is the upright facets there. The body's piece with most of these facets counts; 1 where there is none.
     """
     best: list[np.ndarray] = []
     for piece in pieces:

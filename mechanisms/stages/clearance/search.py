@@ -21,10 +21,10 @@ class Spans:
 
     Each span knows where the mover is at its ends and middle, and how far it strays between.
 
-    ``first`` and ``last`` are the intervals it lies in; ``off`` (mm) is what the true motion may be off there.
-    ``ends`` (n, 3, 3): at start, middle and end the centre's x, y (mm) and the angle (rad); ``place`` and ``turned``
-    (n, 3) are the same as x + i y and e^(i angle). ``push`` (mm) and ``spin``
-    (mm a mm from the centre) are how far points stray from the straight lines between their ends. ``travel`` (mm) and
+    A span knows the poses at its ends and middle. ``first`` and ``last`` are the intervals it lies in; ``off`` (mm) is
+    what the true motion may be off there. ``ends`` (n, 3, 3): at start, middle and end the centre's x, y (mm) and the
+    angle (rad); ``place`` and ``turned`` (n, 3) are the same as x + i y and e^(i angle). ``push`` (mm) and ``spin`` (mm
+    a mm from the centre) are how far points stray from the straight lines between their ends. ``travel`` (mm) and
     ``turn`` (rad) are how far centre and angle are from the middle's at most.
     """
 
@@ -110,8 +110,9 @@ def nearest(p: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
     The triangles do not pierce each other.
 
-    The nearest points of two triangles lie on two edges, or on a corner and a face. For triangles that pierce each
-    other the distance of their edges and corners comes out, and no direction separates them by it (:func:`separation`).
+    The triangles do not pierce each other. The nearest points of two triangles lie on two edges, or on a corner and a
+    face. For triangles that pierce each other the distance of their edges and corners comes out, and no direction
+    separates them by it (:func:`separation`).
     """
     edges = _edge_ways(p, q)
     onto_q = _corner_ways(p, q)
@@ -272,7 +273,7 @@ class Sweep:
 RESOLUTION = 0.005
 """The proven gap is at most this (mm) below one that was measured, apart from the error between samples."""
 FARTHEST_OFF = 1.0
-"""Where the motion may be farther off than this between two samples (mm), parts must be this much farther apart."""
+"""Doubt of the motion between two samples (mm) beyond which parts must be this much farther apart."""
 BATCH = 20_000
 """Candidates looked at in one go, those of the least bounds first."""
 MOST = 30_000_000
@@ -401,8 +402,8 @@ class Search:
     def _boxes_apart(self, rows: np.ndarray) -> np.ndarray:
         """Return (n,) how far (mm) two groups' boxes stay apart over a span, along a side of either.
 
-        A side's direction is that of the still box, or that of the mover's at the middle of the span; along it the
-        boxes are apart by the least of what they are at start and end.
+        They are apart along a side of either. A side's direction is that of the still box, or that of the mover's at
+        the middle of the span; along it the boxes are apart by the least of what they are at start and end.
         """
         a, b, span = rows.T
         along_a, across_a = self.a.box_half[a].T

@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from manifold3d import CrossSection, Manifold
 
 ROUNDING = 1e-3
-"""How far (mm) outlines may be off, since their corners are rounded."""
+"""Error (mm) of outlines, since their corners are rounded."""
 STRAIGHT = 1e-4
 """A slide may leave its line by so much (mm), or turn by so much per mm of reach."""
 
 SLICES = 24
-"""In which what slides is cut, where it is not proven as a whole."""
+"""Number of slices of the slider, where it is not proven as a whole."""
 BESIDE = (1.0, 0.3, 0.1)
 """Parts of the reach: so far ahead and behind of what slides the other piece is looked at."""
 
@@ -44,7 +44,7 @@ class Slide:
 
 
 type Slides = dict[frozenset[str], Slide]
-"""By pair of bodies."""
+"""Lines by pair of bodies."""
 
 
 def slides_of(motion: Motion, where: Mapping[str, BodyPath]) -> Slides:
@@ -76,8 +76,9 @@ def slide_gap(first: MeshPiece, second: MeshPiece, slides: Slides, reach: float 
 
     None where there is no such line, or where the outlines overlap.
 
-    What the other never comes within ``reach`` (mm) of along the line, as the closed end of a cylinder, is left out;
-    None as well where the gap is more than what is left out is away.
+    None where there is no such line, or where the outlines overlap. What the other never comes within ``reach`` (mm) of
+    along the line, as the closed end of a cylinder, is left out; None as well where the gap is more than what is left
+    out is away.
     """
     slide = slides.get(frozenset((first.body, second.body)))
     if slide is None:

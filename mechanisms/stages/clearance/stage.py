@@ -278,7 +278,7 @@ def _sliced(
 
     None if that is not enough.
 
-    Only for a pair that stays near: else the motion alone proves it sooner.
+    None if that is not enough. Only for a pair that stays near: else the motion alone proves it sooner.
     """
     from mechanisms.stages.clearance.outlines import least_gap
     from mechanisms.stages.clearance.search import Sweep
@@ -335,18 +335,18 @@ def _refusal(name: str, refused: list[tuple[Sweep, Least]], limit: float) -> str
     )
     if least.gap >= limit and least.given_up and least.gap - least.error >= limit:
         text = (
-            f"{name}: {pair} come as near as {least.gap:.3g} mm where they were measured, and the search for a nearer "
+            f"{name}: {pair} come as near as {least.gap:.3g} mm where they were measured. The search for a nearer "
             f"pose was given up: their {len(sweep.mover.triangles)} and {len(sweep.still.triangles)} facets run too "
-            f"long beside each other, so that no more than {least.proven:.3g} mm is proven, required {limit / 2:g} mm; "
-            "more steps do not help, but fewer facets do (a larger tolerance of the Solid in parts.py), more room "
-            "between the two, or a shorter motion"
+            f"long beside each other. No more than {least.proven:.3g} mm is proven, required {limit / 2:g} mm. Use "
+            "fewer facets (a larger tolerance of the Solid in parts.py), more room between the two, or a shorter "
+            "motion; more steps do not help"
         )
     elif least.gap >= limit:
         text = (
             f"{name}: {pair} come as near as {least.gap:.3g} mm, and between two samples of data.json they may be "
-            f"{least.error:.3g} mm from where they are taken to be, so no more than {least.proven:.3g} mm is proven, "
-            f"required {limit / 2:g} mm; solve with more steps (without STEPS and motion() they are added where it is "
-            "fast), or with event_rows=True if there are impacts"
+            f"{least.error:.3g} mm off. No more than {least.proven:.3g} mm is proven, required {limit / 2:g} mm. Solve "
+            "with more steps, or with event_rows=True if there are impacts. Without STEPS and motion() steps are added "
+            "where it is fast"
         )
     elif (overlap := sweep.overlap(least.time)).depth > 0:
         text = (

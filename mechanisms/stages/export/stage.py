@@ -120,6 +120,6 @@ FORMATS: dict[str, tuple[str, Callable[[Wanted], Written]]] = {
     "fmu": (".fmu", _fmu),
     "modelica": (".mo", _text(modelica)),
 }
-"""By name: the ending of the file, and what writes it."""
+"""Formats by name: the ending of the file, and its writer."""
 POSED = ("svg", "dxf", "step")
 """Formats of one pose."""

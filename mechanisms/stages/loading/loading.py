@@ -68,8 +68,8 @@ def worded(
 
     ``lines`` are the author's, innermost last.
 
-    For the CAD kernel's exceptions, which say no more than "command not done", the operation with its arguments, the
-    line of ``parts()`` that led there and the remedy are added.
+    ``lines`` are the author's, innermost last. For the CAD kernel's exceptions, which say no more than "command not
+    done", the operation with its arguments, the line of ``parts()`` that led there and the remedy are added.
     """
     last = lines[-1]
     where = f"{shown(Path(last.filename))}:{last.lineno}"

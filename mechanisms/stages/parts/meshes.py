@@ -17,8 +17,8 @@ from shared.stage.errors import UserError
 VOLUME_TOLERANCE = 5e-3
 """Largest difference between the volume of the mesh and that of the solid, relative."""
 OF_ITSELF = (
-    "mbsd shaped this part by itself, so this is a fault of the program and not of your model: give the machine pins "
-    "of another diameter (automatic(m, pin=...) in a parts.py, which mbsd new writes), or change a length a little"
+    "mbsd shaped this part, so this is a fault of the program and not of your model. Use another diameter of pins "
+    "(automatic(m, pin=...) in a parts.py, which mbsd new writes), or change a length a little"
 )
 """The remedy where nobody has written the solid."""
 
@@ -94,8 +94,9 @@ def _edges(mesh: Any) -> str:
 def mass_of(solid: Any, density: float, along: bool = False) -> Mass:
     """Return mass properties (kg, m, kg m^2, m^3) of a ``cadquery.Shape`` in mm; ``density`` in kg/m^3.
 
-    The centre of mass is in the body's frame; the inertia is about the axis through it, along z. ``along``: with z of
-    the centre of mass and the products of inertia, which count where z is that of the model.
+    The shape is in mm, ``density`` in kg/m^3. The centre of mass is in the body's frame; the inertia is about the axis
+    through it, along z. ``along``: with z of the centre of mass and the products of inertia, which count where z is
+    that of the model.
     """
     from OCP.BRepGProp import BRepGProp
     from OCP.GProp import GProp_GProps

@@ -1,10 +1,10 @@
 """The stage ``parts``: a parts.py, or the model alone, becomes STL, STEP and parts.json.
 
-It runs again only if something changed that the solids follow from: parts.py and what it imports or reads, the part
-library, the densities, CadQuery, a parameter that ``parts()`` reads, or ``mount`` of shot.py, whose other fields count
-for nothing here. mechanism.py itself counts only where parts.py uses more of it than the parameters' values; and where
-there is no parts.py, because then the solids follow from the model and its motion (mechanisms/automatic). A file whose
-bytes would be the same is not touched.
+The solids are STL and STEP files, which parts.json describes. It runs again only if something changed that the solids
+follow from: parts.py and what it imports or reads, the part library, the densities, CadQuery, a parameter that
+``parts()`` reads, or ``mount`` of shot.py, whose other fields count for nothing here. mechanism.py itself counts only
+where parts.py uses more of it than the parameters' values; and where there is no parts.py, because then the solids
+follow from the model and its motion (mechanisms/automatic). A file whose bytes would be the same is not touched.
 """
 
 from __future__ import annotations

@@ -156,11 +156,11 @@ def _standing(vertices: np.ndarray, faces: np.ndarray, turn: np.ndarray, before:
 SAME = 0.9
 """The least area of an outline, of the largest, at every height of the sheet; an edge is eased by some of it."""
 FULL = 0.7
-"""How much of the cut sheet the piece must be."""
+"""Part of the cut sheet that the piece must be."""
 THICK = 0.6
 """A piece thicker than this part of its width is none of a sheet."""
 ABOVE = 0.25
-"""How much of the piece may stand above the sheet."""
+"""Part of the piece that may stand above the sheet."""
 SAMPLES = 24
 LARGE = 0.02
 """The least area of a face that may be the sheet's upper one, of the outline's."""

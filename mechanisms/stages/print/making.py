@@ -196,11 +196,11 @@ def plates_of(
 NOZZLE = 0.4
 """Width of a usual nozzle (mm); thinner walls are not printed."""
 RAYS = 150
-"""So many rays are looked at, from the largest facets and from others."""
+"""Number of rays, from the largest facets and from others."""
 SQUARE = 0.94
 """A ray counts where it meets a face that looks the other way, within 20 degrees: a wall, no edge or wedge."""
 NARROW = 0.35
-"""From facets narrower than this no ray starts (mm): they are sides of engraved lines."""
+"""Width (mm) of facets from which no ray starts if they are narrower: they are sides of engraved lines."""
 SKIN = 1e-4
 """Rays start so far below the surface (mm)."""
 

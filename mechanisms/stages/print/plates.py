@@ -19,7 +19,7 @@ from shared.stage.errors import UserError
 # Packs rectangles on as few plates as trimesh's packing finds.
 
 ORDERS = 20
-"""In which rectangles are tried, for each plate."""
+"""Orders in which rectangles are tried, for each plate."""
 DISTINCT = 1e-7
 """Rectangles get sizes that differ by this (mm): how equal ones are sorted would depend on the processor."""
 

@@ -38,7 +38,7 @@ SOURCES = [
     *(ROOT / "shared" / "contract" / f"{name}.py" for name in ("parts", "materials")),
 ]
 LISTED = 5
-"""So many thin pieces are named."""
+"""Number of thin pieces that are named."""
 _LENGTH = re.compile(r"[0-9]+(\.[0-9]*)?")
 
 

@@ -105,8 +105,8 @@ def _natural(name: str, module: Any, m: Mechanism) -> Solution:
     if duration is None:
         freedoms = f"{counted(free, 'degree')} of freedom {'is' if free == 1 else 'are'}"
         raise UserError(
-            f"{name}: {freedoms} not driven, so forces move it and the motion is simulated, but how long is not said; "
-            f"write DURATION = 2.0 (seconds) beside build() in {_file(name)}, or add a driver, "
+            f"{name}: {freedoms} not driven, so the motion is simulated, but its duration is missing. "
+            f"Write DURATION = 2.0 (seconds) beside build() in {_file(name)}, or add a driver, "
             "such as m.drive_angle(...)"
         )
     if steps is not None:
@@ -285,7 +285,7 @@ def _inner(times: np.ndarray, count: int, coarse: np.ndarray, far: np.ndarray) -
 
     Of too many, those that are ``far`` most are divided.
 
-    ``count``: how many times there are already.
+    If they are too many, those with the largest ``far`` remain. ``count``: how many times there are already.
     """
     room = max(MOST_ROWS - count, 0) // (PARTS - 1)
     coarse = coarse[np.argsort(-far, kind="stable")[:room]]
@@ -317,7 +317,7 @@ def _far(solution: Solution, first: np.ndarray, last: np.ndarray, middle: np.nda
 
     ``middle`` (n, bodies, 3) is half way.
 
-    In parts of what may be.
+    ``middle`` (n, bodies, 3) is the motion half way; also counted is how far it is in doubt.
     """
     h, size = (solution.t[last] - solution.t[first])[:, None, None], solution.packed.size
     q, v, a = solution.q, solution.v, solution.a

@@ -93,7 +93,7 @@ def solve(name: str, parts: contract.Parts | None) -> tuple[Solution, dict[str, 
 
     Raises UserError.
 
-    Also returns where the mass of each body is from.
+    Raises UserError. Also returns where the mass of each body is from.
     """
     from mechanisms.stages.solve.masses import give_masses
 

@@ -217,7 +217,7 @@ def test_a_pivot_on_the_axis_of_a_wheel_of_ground_stands_on_that_wheel() -> None
 APART = 0.08
 
 type Machine = Callable[[float, float], Mechanism]
-"""Of the angle by which its world is turned and the radius of its wheel."""
+"""Mechanism by the angle by which its world is turned and the radius of its wheel."""
 
 
 def seen(turn: float, x: float, y: float = 0.0) -> tuple[float, float]:

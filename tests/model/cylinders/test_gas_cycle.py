@@ -285,7 +285,7 @@ def test_it_is_kept_changed_and_pickled(tmp_path: Path) -> None:
         (lambda: pressure_table([0, 1, 0.5, 2], [1, 1, 1, 1]), "angles must rise"),
     ],
 )
-def test_what_cannot_be_is_refused(build, words: str) -> None:
+def test_invalid_requests_are_refused(build, words: str) -> None:
     with pytest.raises(ModelError, match=words):
         build()
 

@@ -53,6 +53,7 @@ from mbsd.dynamics.events.arrays import (
 from mbsd.dynamics.events.friction import (
     AT_LIMIT,
     BEGINS,
+    FAINT,
     acceleration_of,
     begin_deciding,
     begin_touched,
@@ -65,7 +66,6 @@ from mbsd.dynamics.events.friction import (
     press,
     solve_with_friction,
 )
-from mbsd.dynamics.events.jumps import FAINT
 from mbsd.dynamics.events.laws.division import divide
 from mbsd.dynamics.events.rows import gaps_of
 from mbsd.dynamics.events.sticking.sharing import limit_of, stand
@@ -252,7 +252,7 @@ def gives_way(contacts, rounding):
         if taking[k] == 0:
             continue
         if k < gaps:
-            bend = acceleration_of(contacts, contacts.friction.compliance, force, k)[0]
+            bend = acceleration_of(contacts, force, k)[0]
             agrees = agrees and force[k] >= 0.0 and (gives[k] != 0.0 or bend >= 0.0)
             continue
         most = _limit_of(contacts, k, force)
@@ -299,7 +299,7 @@ def _choose(dyn, scratch, contacts, v, halted):
         contacts.chosen[TAKING, k] = contacts.chosen[RESTING, k]
 
 
-@internal
+@lazy(None)
 def _share_rest(contacts, rounding):
     """Share friction among the joints that stay at rest, with contacts that stick N and T."""
     vector = contacts.sticks.vector
@@ -353,16 +353,22 @@ def _loads(dyn, scratch, contacts, t, y):
         apply_loads(dyn.loads, dyn.laws, t, y[0], y[1], scratch.ws.cos_sin, load)
 
 
-@internal
-def _add_sliding(contacts, lam):
-    """Add what the friction of sliding contacts under vector[FORCE] changes of the multipliers lam (m,)."""
+@lazy(None)
+def _press_joints(dyn, scratch, contacts, lam):
+    """Fill normal[FOUND] by multipliers lam (m,), to which vector[FORCE] and friction of sliding contacts are added."""
     friction = contacts.friction
+    sticks = contacts.sticks
+    for k in range(contacts.place.shape[0]):
+        if contacts.chosen[TAKING, k] != 0:
+            for r in range(lam.shape[0]):
+                lam[r] += sticks.borne[k, r] * sticks.vector[FORCE, k]
     for w in range(friction.gap.shape[0]):
-        normal = contacts.sticks.vector[FORCE, friction.gap[w]]
+        normal = sticks.vector[FORCE, friction.gap[w]]
         force = -friction.number[w, KINETIC] * friction.number[w, GUESS] * normal
         if force != 0.0:
             for r in range(lam.shape[0]):
                 lam[r] += contacts.sticks.borne[gaps_of(contacts) + w, r] * force
+    normal_forces(dyn.loads, scratch.ws, scratch.ws.jac, lam, sticks.normal[FOUND])
 
 
 @internal
@@ -395,14 +401,11 @@ def _try(dyn, scratch, contacts, v, hair, rounding, giving):
         if not solve_with_friction(contacts, pressed, contacts.vector[FREE], HOLDING, sticks.vector[FORCE]):
             return -1.0
         keep_pushes(contacts)
-        _share_rest(contacts, rounding)
+        if sticks.joint.shape[0] > 0:
+            _share_rest(contacts, rounding)
         note_giving(contacts, rounding)
-    for k in range(contacts.place.shape[0]):
-        if contacts.chosen[TAKING, k] != 0:
-            for r in range(lam.shape[0]):
-                lam[r] += sticks.borne[k, r] * sticks.vector[FORCE, k]
-    _add_sliding(contacts, lam)
-    normal_forces(dyn.loads, scratch.ws, scratch.ws.jac, lam, sticks.normal[FOUND])
+    if sticks.normal.shape[1] > 0:
+        _press_joints(dyn, scratch, contacts, lam)
     return largest
 
 
@@ -444,7 +447,7 @@ def _agree(dyn, scratch, contacts, v, hair, rounding, giving):
     return -1.0
 
 
-@apart
+@lazy(bool)
 def decide(dyn, scratch, contacts, state, halted, slipping, touched):
     """Find normal forces of gaps in chosen[STAYING], NEXT_SIGN of their ways, number[SIGN] of joints; False: none.
 
@@ -475,7 +478,7 @@ def decide(dyn, scratch, contacts, state, halted, slipping, touched):
         if not breaks(contacts, FAINT * largest, rounding):
             break
     find_left(contacts, rounding)
-    begin_touched(contacts, contacts.friction.compliance, touched, FAINT * largest, rounding)
+    begin_touched(contacts, touched, FAINT * largest, rounding)
     for k in range(count):
         if k < gaps and contacts.vector[NORMAL, k] != BEGINS and not contacts.vector[NORMAL, k] > FAINT * largest:
             contacts.vector[NORMAL, k] = 0.0

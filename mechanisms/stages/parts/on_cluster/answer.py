@@ -53,7 +53,7 @@ class WorkerParts(msgspec.Struct, forbid_unknown_fields=True):
     notes: dict[str, Any] = {}
     """The fields of :class:`Notes`."""
     refusal: str = ""
-    """Why the stage made none."""
+    """Reason why the stage built none."""
 
 
 def read(name: str, content: bytes, own_file: str, program: Mapping[str, str]) -> WorkerParts:

@@ -158,7 +158,7 @@ class Order(msgspec.Struct, frozen=True, kw_only=True):
 
     name: str
     files: dict[str, str]
-    """By name as inputs have it, the hash of the content of each of the authors' files."""
+    """Hashes of the content of the authors' files, by name as inputs have it."""
     program: dict[str, str]
     """Versions and sources of who asks, as ``identity`` gives them."""
     folder: str = ""
@@ -172,8 +172,8 @@ class Order(msgspec.Struct, frozen=True, kw_only=True):
 def collected(name: str, read: Iterable[str] = ()) -> dict[str, bytes]:
     """Return the authors' files, by the name that inputs have, for the mechanism or variant ``name``.
 
-    ``read`` are names of files of a user's own folder that the parts were made from before. One that cannot be read,
-    or goes meanwhile, stays here; that it is missing is reported from here.
+    The names are those that inputs have. ``read`` are names of files of a user's own folder that the parts were made
+    from before. One that cannot be read, or goes meanwhile, stays here; that it is missing is reported from here.
     """
     contents: dict[str, bytes] = {}
     owner = paths.owner_of(name)

@@ -34,9 +34,9 @@ def made_elsewhere(name: str, scale: Scale | None, machine: bytes, before: Itera
 
     None where the stage there refused, which is reported from here.
 
-    ``machine`` is the parts.json of the machine itself, where its model at ``scale`` needs it; ``before`` are names of
-    files from which the parts were made before. Raises UserError if no scheduler answers, no worker is fit, or several
-    workers fail.
+    The rejection is reported from here. ``machine`` is the parts.json of the machine itself, where its model at
+    ``scale`` needs it; ``before`` are names of files from which the parts were made before. Raises UserError if no
+    scheduler answers, no worker is fit, or several workers fail.
     """
     files = collected(name, before)
     contents = by_content({**files, "": machine} if machine else files)

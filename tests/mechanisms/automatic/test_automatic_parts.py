@@ -311,7 +311,7 @@ def planned(number: int) -> Automatic:
 
 def test_a_block_passes_over_a_pivot_that_is_sunk_into_its_guide() -> None:
     automatic = planned(SUNK)
-    (pivot,) = (pin for pin in automatic.layout.of(Pin) if pin.is_flush(automatic.decided, automatic.layout))
+    (pivot,) = (pin for pin in automatic.layout.select(Pin) if pin.is_flush(automatic.decided, automatic.layout))
     (guide,) = pivot.movers
     assert not meets(automatic)
     solids = automatic.plan().solids
@@ -325,11 +325,11 @@ def test_a_crank_of_two_webs_carries_a_rod_on_either_side() -> None:
     automatic = planned(WEBS)
     assert not meets(automatic)
     ((web, body),) = automatic.layout.webs.items()
-    (joining,) = (pin for pin in automatic.layout.of(Pin) if pin.webs)
+    (joining,) = (pin for pin in automatic.layout.select(Pin) if pin.webs)
     between = [automatic.levels[b] for b in joining.movers if b not in (web, body)]
     low, high = sorted((automatic.levels[web], automatic.levels[body]))
     assert low < min(between) <= max(between) < high
-    for other in (pin for pin in automatic.layout.of(Pin) if pin is not joining):
+    for other in (pin for pin in automatic.layout.select(Pin) if pin is not joining):
         assert not {web, body} <= set(other.places), "no other pin is on both"
     (pin,) = (
         solid

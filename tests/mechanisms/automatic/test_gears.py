@@ -62,7 +62,7 @@ def planetary(planets: int, sun: int = SUN, planet: int = PLANET, module: float 
 
 
 def _wheels(made: Automatic) -> list[Wheel]:
-    return made.layout.of(Wheel)
+    return made.layout.select(Wheel)
 
 
 @pytest.mark.parametrize("teeth", [(12, 30), (20, 20), (45, 17)])
@@ -329,7 +329,7 @@ MACHINES: tuple[Machine, ...] = (camshaft, geneva, cardan, toy_car, press, two_v
 
 def made_of(m: Mechanism) -> tuple[Automatic, dict[str, Wheel]]:
     made = Automatic(m, m.sweep(2 * pi, steps=240))
-    return made, {wheel.body: wheel for wheel in made.layout.of(Wheel)}
+    return made, {wheel.body: wheel for wheel in made.layout.select(Wheel)}
 
 
 @pytest.mark.parametrize("turn", [0.0, 0.7, 2.6])
@@ -383,10 +383,10 @@ def test_arm_that_stays_away_from_the_mate_lies_in_the_gears_layer() -> None:
     m.gear_pair("mesh", gear.start, pinion.origin, 0.05, 0.03)
     m.drive_angle("drive", gear, constant_rate(1.0, -1.0))
     made = Automatic(m, m.sweep(2.0, steps=60))
-    assert all(wheel.shares for wheel in made.layout.of(Wheel))
+    assert all(wheel.shares for wheel in made.layout.select(Wheel))
     assert set(made.decided.values()) == {0}
     whole = Automatic(m, m.sweep(2 * pi, steps=240))
-    assert [wheel.body for wheel in whole.layout.of(Wheel) if not wheel.shares] == ["gear"]
+    assert [wheel.body for wheel in whole.layout.select(Wheel) if not wheel.shares] == ["gear"]
 
 
 # Rings that turn and stepped gears by themselves: each toothed rim in its layer, carried by its body's plate.

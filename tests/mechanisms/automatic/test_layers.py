@@ -160,7 +160,7 @@ def test_a_pivot_that_is_swept_from_all_sides_hangs_from_a_bridge(build: object)
     made = _planned(build())
     _clear(made)
     assert made.sizes.pin == made.wishes()[0].pin
-    (bridge,) = made.layout.of(Bridge)
+    (bridge,) = made.layout.select(Bridge)
     (hanging,) = bridge.pins
     assert made.decided[hanging.choice] == 1
     assert sum(made.decided[f"pin {name}"] for name in made.m.joints) == 1
@@ -217,7 +217,7 @@ def test_pins_that_end_on_both_sides_of_an_empty_layer_do_not_meet_in_it() -> No
     m.start_near(crank=0, rod=5, slider=0)
     made = Automatic(m, m.sweep())
     layout = made.layout
-    pins = {feature.name: feature for feature in layout.of(Pin)}
+    pins = {feature.name: feature for feature in layout.select(Pin)}
     upper, lower = pins["A"], pins["C"]
     levels = {**made.decided, "crank": 3, "rod": 1, "slider": 0, upper.choice: 1, lower.choice: 0}
     room = {need.gap: need.height for pin in (upper, lower) for need in pin.needs(levels, layout)}

@@ -56,7 +56,7 @@ def drive(
 
 def made_of(m: Mechanism) -> tuple[Automatic, Rack, Wheel]:
     made = Automatic(m, m.sweep(steps=40))
-    return made, made.layout.of(Rack)[0], made.layout.of(Wheel)[0]
+    return made, made.layout.select(Rack)[0], made.layout.select(Wheel)[0]
 
 
 @settings(max_examples=10, deadline=None)

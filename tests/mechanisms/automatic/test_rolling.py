@@ -49,7 +49,7 @@ def _cart(curve: bool) -> Mechanism:
 
 def _planned(m: Mechanism) -> tuple[Automatic, Round, np.ndarray]:
     made = Automatic(m, m.sweep(1.0, 200))
-    [wheel], [road] = made.layout.of(Round), made.layout.of(Road)
+    [wheel], [road] = made.layout.select(Round), made.layout.select(Road)
     assert road.rounds == [wheel]
     return made, wheel, road.path
 
@@ -164,7 +164,7 @@ def vehicle(surface: str, turn: float = 0.0, apart: float = 0.2) -> Mechanism:
 
 
 def roads(made: Automatic) -> list[Road]:
-    return made.layout.of(Road)
+    return made.layout.select(Road)
 
 
 @pytest.mark.parametrize("turn", [0.0, 1.1])
@@ -328,7 +328,7 @@ ALL = {
 
 def made_of(solution: Solution) -> tuple[Automatic, Track]:
     made = Automatic(solution.mechanism, solution)
-    [track] = made.layout.of(Track)
+    [track] = made.layout.select(Track)
     return made, track
 
 

@@ -66,7 +66,7 @@ def beads() -> Mechanism:
 
 
 def slides(made: Automatic) -> list[Slide]:
-    return made.layout.of(Slide)
+    return made.layout.select(Slide)
 
 
 def rails(made: Automatic) -> list[str]:
@@ -196,7 +196,7 @@ def turned(scale: float, turn: float, angle: float = math.pi / 2) -> Mechanism:
 def test_turned_and_scaled_the_layout_stays(scale: float, turn: float, angle: float) -> None:
     m = turned(scale, turn, angle)
     made = Automatic(m, m.sweep())
-    [crossing] = made.layout.of(Crossing)
+    [crossing] = made.layout.select(Crossing)
     assert crossing.middle == pytest.approx([made.sizes.of_metres(c * scale) for c in (0.3, 0.2)])
     assert made.levels == {"first": 0, "second": 0, "rod": 1}
     assert not meets(made)

@@ -229,7 +229,7 @@ class Layout:
         """Return the same with flush pivots, and posts of slotted plates out of the way of carried pins."""
         return replace(self, flush=True, far_posts=True, features=list(self.features))
 
-    def of[F](self, kind: type[F]) -> list[F]:
+    def select[F](self, kind: type[F]) -> list[F]:
         """Return the features of one kind, in their order."""
         return [feature for feature in self.features if isinstance(feature, kind)]
 

@@ -108,8 +108,8 @@ class Bridge(Feature):
 
 def may_hang(layout: Layout) -> frozenset[str]:
     """Return choices of the pivots that may hang: those on whose pin no spring ends."""
-    pivots = [pin for pin in layout.of(Pin) if pin.on_ground]
-    held = [stud.pin for stud in layout.of(Stud)]
+    pivots = [pin for pin in layout.select(Pin) if pin.on_ground]
+    held = [stud.pin for stud in layout.select(Stud)]
     return frozenset(pin.choice for pin in pivots if pin not in held)
 
 
@@ -118,7 +118,7 @@ def bridges_over(layout: Layout, levels: Mapping[str, int]) -> list[Feature]:
 
     Raises UserError where a bridge has no place.
     """
-    waiting = [pin for pin in layout.of(Pin) if pin.on_ground and levels[pin.choice] == 1]
+    waiting = [pin for pin in layout.select(Pin) if pin.on_ground and levels[pin.choice] == 1]
     points, still = _points(layout, waiting)
     moving = Swept(points)
     bridges: list[Bridge] = []

@@ -81,7 +81,7 @@ class RimMark(Feature):
         """Yield the pointer, over the face of its wheel."""
         if self.points:
             shape = Rounded(np.array([self.at, (self.x, self.y)]), self.radius + BASE)
-            own = frozenset(joint_pin.what for joint_pin in layout.of(Pin) if self._is_clear_of(joint_pin))
+            own = frozenset(joint_pin.what for joint_pin in layout.select(Pin) if self._is_clear_of(joint_pin))
             yield Item(
                 f"the pointer of {self.name}", self.body, shape, Reach((self.body,), 1, 1), source=self, meshes=own,
                 spared=False,
@@ -341,7 +341,7 @@ def styluses(layout: Layout, tall: bool, pointers: bool) -> list[Feature]:
     Points on rims get marks there, with ``pointers`` where these are wanted.
     """
     features: list[Feature] = []
-    balls = {feature.body for feature in layout.of(FreeBody) if feature.is_ball}
+    balls = {feature.body for feature in layout.select(FreeBody) if feature.is_ball}
     taken = [a for feature in layout.features for a in feature.anchors(layout)]
     for name, marker in layout.m.traces.items():
         body, (x, y) = marker.body.name, layout.place(marker)
@@ -369,7 +369,7 @@ def weights(layout: Layout, heavy: bool) -> list[Feature]:
     ``heavy``: only for ends of bars where their centre of mass is, even if they are traced.
     """
     features: list[Feature] = []
-    free = {feature.body for feature in layout.of(FreeBody)}
+    free = {feature.body for feature in layout.select(FreeBody)}
     round_bodies = {*layout.wheels, *(body for body, _, _ in layout.rounds)}
     taken = [a for feature in layout.features for a in feature.anchors(layout)]
     for name in layout.bodies:

@@ -185,7 +185,7 @@ class Pin(Feature):
 
 def pins_on(layout: Layout, body: str) -> list[Pin]:
     """Return the pins that go through a body."""
-    return [feature for feature in layout.of(Pin) if body in feature.places]
+    return [feature for feature in layout.select(Pin) if body in feature.places]
 
 
 def pins_at(layout: Layout, body: str, place: tuple[float, float]) -> list[Pin]:

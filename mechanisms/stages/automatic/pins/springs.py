@@ -71,7 +71,7 @@ class Stretching(Feature):
         barrel, ends = self.names
         held = self._studs(layout)
         own = {stud.what for stud in held} | {stud.pin.what for stud in held if stud.pin}
-        others = [f for f in layout.of(Stretching) if f is not self]
+        others = [f for f in layout.select(Stretching) if f is not self]
         first, last = self.path[:, :1], self.path[:, 1:]
         inner = np.concatenate([first + HOOK * (last - first), last - HOOK * (last - first)], axis=1)
         if self.sags is not None and self.sags.any():
@@ -87,12 +87,12 @@ class Stretching(Feature):
             yield Item(_core(self), self.layer, wide, layer, source=self, only=cores)
 
     def _studs(self, layout: Layout) -> list[Stud]:
-        return [f for f in layout.of(Stud) if any(spring is self for spring, _ in f.ends)]
+        return [f for f in layout.select(Stud) if any(spring is self for spring, _ in f.ends)]
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """Yield the room for its barrel, beside that of another and above a pin that its end stands on."""
         sizes, level, over = layout.sizes, levels[self.layer], self.over(layout)
-        others = [f for f in layout.of(Stretching) if f is not self]
+        others = [f for f in layout.select(Stretching) if f is not self]
         pins = [max(levels[body] for body in stud.pin.movers) for stud in self._studs(layout) if stud.pin]
         for gap, next_to in ((level - 1, level - 1), (level, level + 1)):
             beside = [spring.over(layout) for spring in others if levels[spring.layer] == next_to]

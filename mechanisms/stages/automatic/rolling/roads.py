@@ -249,7 +249,7 @@ def banded(name: str, rounds: Sequence[Round], path: np.ndarray) -> Road | None:
 
 def runs_on_ground(layout: Layout) -> bool:
     """Return True if a wheel runs on a road of ground, and gravity holds it there."""
-    return any(road.holds(layout.m) for road in layout.of(Road))
+    return any(road.holds(layout.m) for road in layout.select(Road))
 
 
 def _thinned(path: np.ndarray) -> np.ndarray:

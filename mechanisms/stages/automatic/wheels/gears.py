@@ -56,7 +56,7 @@ def with_own_layers(layout: Layout, beside_arms: bool) -> Layout:
 
     All features must be known. ``beside_arms``: also where an arm is in the way of their mates.
     """
-    wheels = [wheel for wheel in layout.of(Wheel) if wheel.body != "ground" and wheel.shares]
+    wheels = [wheel for wheel in layout.select(Wheel) if wheel.body != "ground" and wheel.shares]
     wide = [wheel for wheel in wheels if wheel.radius >= LEAST_ON_TUBE]
     filled = {getattr(feature, "fills", "") for feature in layout.features}
     beside = [wheel for wheel in wide if wheel.body not in filled and beside_arms and _meets_an_arm(wheel, layout)]
@@ -69,7 +69,7 @@ def with_own_layers(layout: Layout, beside_arms: bool) -> Layout:
 def _meets_an_arm(wheel: Wheel, layout: Layout) -> bool:
     """Return True if its mates, or its belt, meet what else its body has in its layer."""
     mates: list[object] = [*wheel.mates]
-    mates += [belt for belt in layout.of(Belt) if wheel in belt.pulleys]
+    mates += [belt for belt in layout.select(Belt) if wheel in belt.pulleys]
     near = [item for item in layout.items if item.source in mates and item.body != wheel.body]
     own = [item for item in layout.items if item.body == wheel.body and item.source is not wheel]
     own = [item for item in own if _is_always_in(item, wheel.body)]

@@ -10,6 +10,9 @@ moves by dt and the state jumps by the law of the run itself, R:
 
 Where contacts open or the user only notes an event, rates go on as they were and nothing jumps. Sources: those of
 free/jumps.py.
+
+Mechanisms keep their own events (free/jumps.py, free/guards.py): these know joints, friction and clutches by name, and
+act on the few coordinates that a motion leaves free. Nodes, errors and the march between events are shared.
 """
 
 from __future__ import annotations
@@ -136,12 +139,14 @@ class RunTangents:
     """Estimate of the largest error, as part of the largest change."""
 
 
-def run_tangents(run: Run, end: float, times: Sequence[float] | np.ndarray, every: Sequence[Parameter]) -> RunTangents:
-    """Return a run until ``end`` (s), and its changes with every parameter at output ``times`` (T,) (s).
+def run_tangents(
+    run: Run, end: float, times: Sequence[float] | np.ndarray, parameters: Sequence[Parameter]
+) -> RunTangents:
+    """Return a run until ``end`` (s), and its changes with all ``parameters`` at output ``times`` (T,) (s).
 
     Raises ModelError where there is no derivative, or for events whose derivatives are unknown.
     """
-    return _Marching(run, end, np.asarray(times, float), every).tangents()
+    return _March(run, end, np.asarray(times, float), parameters).tangents()
 
 
 def _copied(part: Any) -> Any:
@@ -165,11 +170,12 @@ class _Outputs:
     """(R, n + k, P)"""
 
 
-class _Marching:
+class _March:
     """The march along one run; ``change`` (2, P, 3 + n) is that of the state where it stands."""
 
-    def __init__(self, run: Run, end: float, times: np.ndarray, every: Sequence[Parameter]) -> None:
-        self.run, self.end, self.times, self.every, self.dyn = run, end, times, every, run.formulation
+    def __init__(self, run: Run, end: float, times: np.ndarray, parameters: Sequence[Parameter]) -> None:
+        self.run, self.end, self.times, self.dyn = run, end, times, run.formulation
+        self.parameters = parameters
         self.name = type(run.formulation).__name__
         self.scratch, self.own = _copied(run.scratch), _copied(run.scratch)
         """For the loop, and for evaluations between its steps."""
@@ -179,8 +185,8 @@ class _Marching:
         self.size = 1.0 / self.dyn.per_size
         """(3 + n,) sizes of coordinates, and with ``fastest`` of velocities."""
         self.fastest = self._fastest(run.start.y)
-        self.change = np.zeros((2, len(every), self.width))
-        for p, parameter in enumerate(every):
+        self.change = np.zeros((2, len(parameters), self.width))
+        for p, parameter in enumerate(parameters):
             self.change[0, p, IDLE:] = parameter.q
             self.change[1, p, IDLE : IDLE + self.k] = parameter.v
         self.outputs, self.events, self.error = _Outputs(), list[RunEvent](), 0.0
@@ -196,7 +202,7 @@ class _Marching:
             self._begin()
             while not self.ended and self._go_to_event():
                 self._pass_event()
-        changes = np.concatenate([np.zeros((0, self.n + self.k, len(self.every))), *self.outputs.changes])
+        changes = np.concatenate([np.zeros((0, self.n + self.k, len(self.parameters))), *self.outputs.changes])
         q, v = changes[:, : self.n], changes[:, self.n :]
         return RunTangents(
             np.concatenate([NOWHERE, *self.outputs.t]),
@@ -244,7 +250,7 @@ class _Marching:
         t = float(self.state.clock[TIME])
         for row in np.flatnonzero(self.contacts.number[:, CLOSED] > 0.0).tolist():
             along, by_number = self._guard_changes(row, t, self.state.y, self.change)
-            for parameter, slopes in zip(self.every, (along + by_number).T, strict=True):
+            for parameter, slopes in zip(self.parameters, (along + by_number).T, strict=True):
                 scale = self.contacts.number[row, SCALE] * parameter.size
                 if (np.abs(slopes) * scale > ALIKE * np.array([1.0, self.fastest])).any():
                     raise ModelError(
@@ -322,7 +328,7 @@ class _Marching:
         self.change[0, :, IDLE:], self.change[1, :, IDLE : IDLE + self.k] = np.split(line.y[-1].T, [self.n], axis=1)
 
     def _repeated(self, y: np.ndarray, times: np.ndarray, end: float) -> np.ndarray:
-        """(T, 2, 3 + n) states at times of a stretch that begins with y (2, 3 + n)."""
+        """Return states (T, 2, 3 + n) at times of a stretch that begins with y (2, 3 + n)."""
         state = start_state(y, self.rows, float(times[0]))
         out = output_for(times, self.width, self.rows)
         status = self.run.method.advance(self.dyn, self.own, state, out, self.run.settings, end, MANY)
@@ -333,23 +339,23 @@ class _Marching:
         """Return changes along nodes t (T,) (s), where states are y (T, 2, 3 + n), from ``begun`` (n + k, P)."""
         n, k = self.n, self.k
         self.fastest = max(self.fastest, self._fastest(y))
-        matrix, right = np.zeros((len(t), n + k, n + k)), np.zeros((len(t), n + k, len(self.every)))
+        matrix, right = np.zeros((len(t), n + k, n + k)), np.zeros((len(t), n + k, len(self.parameters)))
         step = REACH * np.stack([self.size, self.fastest * self.size])
         scratch = np.zeros((2, self.width)), np.zeros((2, 2, self.width)), np.zeros(self.rows)
         differentiate_rates(self.dyn, self.own, t, y, step, k, *scratch, matrix)
-        for p, parameter in enumerate(self.every):
+        for p, parameter in enumerate(self.parameters):
             if parameter.above is not None:
                 slope = self._rates(parameter.above, t, y) - self._rates(parameter.below, t, y)
                 slope /= 2.0 * parameter.step
                 right[:, :n, p], right[:, n:, p] = slope[:, 0, IDLE:], slope[:, 1, IDLE : IDLE + k]
-        size, per = self.size[IDLE:], np.array([1.0 / parameter.size for parameter in self.every])
+        size, per = self.size[IDLE:], np.array([1.0 / parameter.size for parameter in self.parameters])
         slight = SLIGHT * np.concatenate([size, self.fastest * size[:k]])[:, None] * per
         same = n == k and has_same_rates(type(self.dyn))
         kinematics = SAME_RATES if same else own_rates(matrix[:, :n], right[:, :n])
         return carried(t, matrix[:, n:], right[:, n:], begun, slight, kinematics)
 
     def _rates(self, dyn: Any, t: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """(T, 2, 3 + n) q' and v' of a formulation."""
+        """Return q' and v' (T, 2, 3 + n) of a formulation."""
         out = np.zeros_like(y)
         tabulate_rates(dyn, self.own, t, y, np.zeros(self.rows), out)
         return out
@@ -361,14 +367,14 @@ class _Marching:
     # -- events -------------------------------------------------------------------------------------------------------
 
     def _steps(self, change: np.ndarray) -> np.ndarray:
-        """(P,) steps at which changes (2, P, 3 + n) of states go as far as REACH."""
+        """Return steps (P,) at which changes (2, P, 3 + n) of states go as far as REACH."""
         far = np.maximum(
             np.abs(change[0] / self.size).max(axis=1), np.abs(change[1] / self.size).max(axis=1) / self.fastest
         )
         return REACH / np.where(far > 0.0, far, 1.0)
 
     def _guard(self, row: int, t: np.ndarray, y: np.ndarray, dyn: Any, contacts: Any) -> np.ndarray:
-        """(2, T) a guard at states y (T, 2, 3 + n): the gap of a contact and J v, or twice a value of the user."""
+        """Return a guard (2, T) at states y (T, 2, 3 + n): a contact's gap and J v, or twice a value of the user."""
         out = np.zeros((2, len(t)))
         if row < len(contacts.place):
             tabulate_gaps(dyn, self.own, int(contacts.place[row, ROW]), t, y, out)
@@ -378,21 +384,21 @@ class _Marching:
         return out
 
     def _guard_changes(self, row: int, t: float, y: np.ndarray, change: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(2, P) how what ``_guard`` gives changes along changes (2, P, 3 + n) of a state, and with the numbers."""
+        """Return changes (2, P) of a guard along changes (2, P, 3 + n) of a state, and with the parameters."""
         h = self._steps(change)
         away = np.moveaxis(h[:, None] * change, 1, 0)
         beside = np.concatenate([y + away, y - away])
         values = self._guard(row, np.full(len(beside), t), beside, self.dyn, self.contacts)
         ahead, behind = np.split(values, 2, axis=1)
         along, by_number = (ahead - behind) / (2.0 * h), np.zeros_like(ahead)
-        for p, parameter in enumerate(self.every):
+        for p, parameter in enumerate(self.parameters):
             if parameter.above is not None or parameter.contacts is not None:
                 low, high = (self._guard(row, np.array([t]), y[None], *side)[:, 0] for side in self._sides(parameter))
                 by_number[:, p] = (high - low) / (2.0 * parameter.step)
         return along, by_number
 
     def _times_moved(self, row: int, t: float, before: State) -> np.ndarray:
-        """(P,) how the time of an event changes."""
+        """Return changes (P,) of the time of an event."""
         dt = REACH / self.fastest
         ahead, behind = (before.y + sign * dt * before.dy for sign in (1.0, -1.0))
         later, sooner = self._guard(
@@ -431,9 +437,9 @@ class _Marching:
         return partial(self._struck, kept, struck)
 
     def _mapped(self, jump: Jump, t: float, y: np.ndarray, total: np.ndarray, moved: np.ndarray) -> np.ndarray:
-        """(P, 3 + n) how velocities after a jump change, along changes ``total`` (2, P, 3 + n) of the state y."""
+        """Return changes (P, 3 + n) of velocities after a jump, along changes ``total`` of the state y."""
         out = np.zeros_like(total[1])
-        for p, (h, parameter) in enumerate(zip(self._steps(total), self.every, strict=True)):
+        for p, (h, parameter) in enumerate(zip(self._steps(total), self.parameters, strict=True)):
             ahead, behind = (
                 jump(t + s * h * moved[p], y + s * h * total[:, p], self.dyn, self.contacts) for s in (1.0, -1.0)
             )
@@ -444,12 +450,12 @@ class _Marching:
         return out
 
     def _sides(self, parameter: Parameter) -> list[tuple[Any, Any]]:
-        """Formulations and contacts at p - step and p + step."""
+        """Return formulation and contacts at p - step, and at p + step."""
         formulations = (self.dyn, self.dyn) if parameter.above is None else (parameter.below, parameter.above)
         return list(zip(formulations, parameter.contacts or (self.contacts, self.contacts), strict=True))
 
     def _struck(self, kept: Any, struck: list[int], t: float, y: np.ndarray, dyn: Any, contacts: Any) -> np.ndarray:
-        """(3 + n,) velocities after an impact at a state y (2, 3 + n)."""
+        """Return velocities (3 + n,) after an impact at a state y (2, 3 + n)."""
         own, y = _copied(kept), y.copy()
         own.chosen[TOUCHING] = 0
         own.chosen[TOUCHING, struck] = 1
@@ -459,7 +465,7 @@ class _Marching:
         return y[1]
 
     def _acted(self, kept: Any, users: int, t: float, y: np.ndarray, dyn: Any, contacts: Any) -> np.ndarray:
-        """(3 + n,) velocities after an action of the user at a state y (2, 3 + n)."""
+        """Return velocities (3 + n,) after an action of the user at a state y (2, 3 + n)."""
         y = y.copy()
         let_act(dyn, self.own, kept, contacts.events, users, t, y)
         return y[1]

@@ -71,7 +71,7 @@ def point_of(q: np.ndarray, point: np.ndarray) -> np.ndarray:
 
 
 def product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Of quaternions; complex steps go through it."""
+    """Return the product of two quaternions (4,), real or complex."""
     return np.concatenate([[a[0] * b[0] - a[1:] @ b[1:]], a[0] * b[1:] + b[0] * a[1:] + np.cross(a[1:], b[1:])])
 
 

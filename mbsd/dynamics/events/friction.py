@@ -157,10 +157,7 @@ def _fill_tableau(contacts, compliance, rates, first, both, size, fastest):
         if i >= first:
             tableau[i + ways, last] = -rate
         for j in range(both):
-            other = math.sqrt(alone[places[j]])
-            value = compliance[places[i], places[j]] * unit
-            value = value * (1.0 / other) if ways == 0 else value / other  # digits of gaps alone are recorded so
-            value /= size
+            value = compliance[places[i], places[j]] * unit / math.sqrt(alone[places[j]]) / size
             tableau[i, n + j] = -value
             if j >= first:
                 tableau[i, n + j + ways] = value

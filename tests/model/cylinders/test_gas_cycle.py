@@ -330,7 +330,9 @@ def test_polytropic_gas_has_pressure_and_volume_and_no_room_beyond_its_head() ->
     assert view.volume == pytest.approx(1e-3 * (0.11 + sol.body("piston").x))
     assert view.pressure == pytest.approx(2e5 * (0.11e-3 / view.volume) ** 1.3)
     assert view.indicated_work is None
-    with pytest.raises(ModelError, match=r"air: force 'gas': at t = 0.4\d* s the piston lies -0.02 m .* its gas no room"):
+    with pytest.raises(
+        ModelError, match=r"air: force 'gas': at t = 0.4\d* s the piston lies -0.02 m .* its gas no room"
+    ):
         air(0.12).sweep()
 
 

@@ -141,7 +141,7 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     _refuse_superfluous_drivers(packed, mobility)
     switched = [*all_contacts(m, packed, initial.q), *stuck_rows(packed)] if contacts else []
     if switched:
-        packed = with_contacts(m, packed, switched)
+        packed = with_contacts(m, packed, switched, initial.q)
     apart = passes_for(packed, start, initial.q, weights, per_size, still)
     weight = weight_of(packed)
     packed = with_states(packed)

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import numpy as np
 
 from render.film.story.frame import Kind, Reason
+from render.insights.loops import FEW, loops
 from render.magnitudes import effort_floor, force_scale
-from render.report.transmission import FEW, loops
 from render.report.written import Amounts, counted, degrees, first_peak, moment, speed, written
 from shared.contract import BodyMotion, Motion, Parts, read_motion, read_parts
 from shared.contract.clearance import Clearance, read_clearance

@@ -14,8 +14,8 @@ from render.film.film import Film
 from render.film.poses import local_place
 from render.film.tubes.trails import colour_of, trails_of
 from render.freshness import current_clearance
+from render.insights.loops import marks
 from render.magnitudes import floor_of, floors, shaking, without_noise
-from render.report.transmission import marks
 from render.view.loads import arcs_of, arrows_of, clearance_of
 from render.view.solid import with_parts
 from shared.contract import JointMotion, Motion, read_motion, read_parts

@@ -23,10 +23,10 @@ from render.frames.frames import Pictures
 from render.frames.story.drawing import BETWEEN, Drawing, caption_lines
 from render.frames.story.strip import Strip
 from render.freshness import current_clearance
+from render.insights.loops import marks
 from render.presets import Preset
 from render.report import description
 from render.report.facts import facts, reasons
-from render.report.transmission import marks
 from shared.contract import Motion, read_motion, read_parts
 from shared.contract.geometry import with_rods
 from shared.contract.shot import Shot, read_shot, shown

@@ -18,6 +18,8 @@ LOST = 1e-3
 """Part of the energy that moves below which nothing is lost."""
 SMALL = 0.02
 """Part of the largest loss below which another is not counted."""
+SOFT = 1e-5
+"""Part of the energy that moves below which impacts are none."""
 LEAST_SWINGS = 3
 
 
@@ -26,6 +28,7 @@ def energy(seen: Seen) -> Iterator[Insight]:
     if seen.motion.analysis == "simulation":
         yield from losses(seen)
         yield from swings(seen)
+        yield from slides(seen)
         yield from orbits(seen)
         yield from isolation(seen)
     yield from impacts(seen)
@@ -92,7 +95,7 @@ def _whole(seen: Seen) -> tuple[float, float]:
 
 def swings(seen: Seen) -> Iterator[Insight]:
     """Yield the period of the clearest free swing, with its loss from one swing to the next."""
-    if seen.input is not None or seen.motion.drivers:
+    if seen.input is not None or seen.motion.drivers or seen.motion.events:
         return
     best = None
     for output in _swinging(seen):
@@ -130,6 +133,26 @@ def swings(seen: Seen) -> Iterator[Insight]:
                     "decay", kept, "", (times[0], times[-1]), 0.7, bodies=(output.body,), body=body(output.body),
                     lost=amount(1 - kept, "share"),
                 )  # fmt: skip
+
+
+def slides(seen: Seen) -> Iterator[Insight]:
+    """Yield bodies that swing to and fro on a guide of another moving body."""
+    for name, each in seen.motion.joints.items():
+        if each.pair != "guide" or "ground" in each.bodies:
+            continue
+        first, second = each.bodies
+        x, y = np.asarray(each.x), np.asarray(each.y)
+        carrier = seen.motion.bodies[first]
+        angle = seen.theta[first] + (each.shape.markers[0][2] if each.shape is not None else 0.0)
+        value = np.cos(angle) * (x - carrier.x) + np.sin(angle) * (y - carrier.y)
+        tops = peaks(seen.time, value)
+        gaps = np.diff([at for at, _ in tops])
+        if len(gaps) and np.ptp(gaps) < 0.1 * gaps.mean():
+            yield insight(
+                "slide", gaps.mean(), "s", (tops[0][0], tops[1][0]), 0.7, bodies=(first, second), joints=(name,),
+                body=body(second), other=body(first), period=amount(gaps.mean(), "s"),
+                travel=amount(float(np.ptp(value)), "m"),
+            )  # fmt: skip
 
 
 def _swinging(seen: Seen) -> list[Output]:
@@ -184,6 +207,13 @@ def impacts(seen: Seen) -> Iterator[Insight]:
     if not hits:
         return
     hardest = max(hits, key=lambda event: abs(event.impulse))
+    moved = max(max(seen.motion.energy.kinetic), float(np.ptp(seen.motion.energy.potential)))
+    if (
+        abs(hardest.energy) < SOFT * moved
+        and all(each.energy > -SOFT * moved for each in hits)
+        and not _comes_back(seen)
+    ):
+        return
     contact = seen.motion.contacts.get(hardest.name)
     at, unit = hardest.time, f"{contact.effort_unit if contact else 'N'} s"
     values: dict[str, Any] = {"load": load(hardest.name), "at": amount(at, "s")}
@@ -205,6 +235,13 @@ def impacts(seen: Seen) -> Iterator[Insight]:
             joints=tuple(dict.fromkeys(event.name for event in hits)), count=amount(len(hits), "count"),
             first=amount(hits[0].time, "s"), last=amount(hits[-1].time, "s"),
         )  # fmt: skip
+
+
+def _comes_back(seen: Seen) -> bool:
+    """Return True if some contact throws back what meets it: then impacts take no energy."""
+    shares = [rebound(seen, contact, event.time) for event in seen.motion.events if event.what == "impact"
+              and (contact := seen.motion.contacts.get(event.name)) is not None]  # fmt: skip
+    return any(each is not None and each[1] > 0.1 for each in shares)
 
 
 def rebound(seen: Seen, contact: ContactMotion, at: float) -> tuple[float, float] | None:

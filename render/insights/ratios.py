@@ -21,6 +21,7 @@ def ratios(seen: Seen) -> Iterator[Insight]:
     yield from speed_ratio(seen)
     for output in seen.outputs:
         yield from changing_ratio(seen, output)
+    yield from difference(seen)
     yield from scale(seen)
 
 
@@ -63,7 +64,7 @@ def _planets(seen: Seen, own: Array, crank: str) -> Iterator[Insight]:
         if name in held or name in seen.pinned or np.ptp(seen.theta[name]) < TURN:
             continue
         ratio = held_ratio(omega, own)
-        if ratio is not None:
+        if ratio is not None and abs(ratio - 1) > HELD:
             yield insight(
                 "speed_ratio", ratio, "", (float(seen.time[0]), float(seen.time[-1])), 0.45,
                 "ratio_carried_back" if ratio < 0 else "ratio_carried", bodies=(crank, name), crank=body(crank),
@@ -113,6 +114,21 @@ def changing_ratio(seen: Seen, output: Output) -> Iterator[Insight]:
             "changing_ratio", ratio[k], "", when, 0.4 + 0.1 * min(ratio[k] / max(least, 1e-3), 5), template,
             bodies=(given.body, output.body), joints=(given.name,), body=body(output.body), input=load(given.name),
             most=amount(ratio[k], "", 3), least=amount(least, "", 2), at=amount(when[0], "s"), low=amount(low, "s"),
+        )  # fmt: skip
+
+
+def difference(seen: Seen) -> Iterator[Insight]:
+    """Yield how much further one of two mirrored outputs turns than the other, as the wheels of a car do."""
+    for one, other in combinations([each for each in seen.outputs if not each.slides], 2):
+        first, second = (each.value - each.value[0] for each in (one, other))
+        ends = (float(first.max()), float(-first.min())), (float(-second.min()), float(second.max()))
+        if np.abs(np.subtract(*ends)).max() > 1e-4 * max(ends[0]) or abs(ends[0][0] - ends[0][1]) < 0.02 * max(ends[0]):
+            continue
+        k = int(np.abs(first).argmax())
+        most, least = abs(float(first[k])), abs(float(second[k]))
+        yield insight(
+            "difference", most / least, "", seen.at(k), 0.8, bodies=(one.body, other.body), body=body(one.body),
+            other=body(other.body), most=amount(most, "deg"), least=amount(least, "deg"),
         )  # fmt: skip
 
 

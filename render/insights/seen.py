@@ -120,7 +120,31 @@ class Seen:
                 out.append(Output(name, True, value, rate))
             elif name in self.pinned:
                 out.append(Output(name, False, self.theta[name], self.omega[name]))
+            elif name in self.level and self._is_straight(name):
+                value, rate = self._along(name)
+                out.append(Output(name, True, value, rate))
         return [output for output in out if output.travel > self.floors["m" if output.slides else "rad"]]
+
+    @cached_property
+    def level(self) -> list[str]:
+        """Bodies that never turn, though neither guides nor locks keep them from it; of a guide's two the heavier."""
+        kept, joints = {"ground"}, self.motion.joints.values()
+        locks = [joint.bodies for joint in joints if joint.pair == "guide" or "lock" in joint.kind]
+        locks += [driver.bodies for driver in self.motion.drivers.values() if driver.bodies and driver.unit == "rad"]
+        while more := {body for pair in locks if set(pair) & kept for body in pair} - kept:
+            kept |= more
+        still = [name for name in self.motion.bodies if name not in kept and np.ptp(self.theta[name]) < 1e-7
+                 and sum(name in joint.bodies for joint in joints if joint.pair) > 1]  # fmt: skip
+        lighter = {min(pair, key=lambda each: self.motion.bodies[each].mass)
+                   for pair in locks if set(pair) <= set(still)}  # fmt: skip
+        return [name for name in still if name not in lighter]
+
+    def _is_straight(self, body: str) -> bool:
+        """Return True if a body's centre of mass runs along a line."""
+        centre = self.centres[body]
+        way = np.stack([centre.x, centre.y], axis=1)
+        spread = np.linalg.svd(way - way.mean(axis=0), compute_uv=False)
+        return bool(spread[1] < 1e-6 * spread[0])
 
     def _along(self, body: str) -> tuple[Array, Array]:
         """Return the coordinate of a body that does not turn along its main direction, and its rate."""
@@ -136,10 +160,14 @@ class Seen:
         moving = {name: driver for name, driver in self.motion.drivers.items() if np.ptp(driver.value) > 1e-9}
         if len(moving) == 1:
             ((name, driver),) = moving.items()
-            bodies = [body for body in driver.bodies or () if body != "ground"]
-            body = bodies[-1] if bodies else ""
             value = np.asarray(driver.value)
-            rate = self.omega[body] if driver.unit == "rad" and body and len(bodies) == 1 else np.gradient(
+            bodies = [body for body in driver.bodies or () if body != "ground"]
+            if driver.bodies is None:  # files of version 1 do not say
+                bodies = [body for body in self.motion.bodies if np.ptp(self.theta[body] - value) < 1e-6]
+            if not bodies:
+                return None
+            body = bodies[-1]
+            rate = self.omega[body] if driver.unit == "rad" and len(bodies) == 1 else np.gradient(
                 value, np.maximum.accumulate(self.time + 1e-12 * np.arange(len(self.time)))
             )  # fmt: skip
             return self._input(name, body, value, rate, driver.unit)
@@ -178,10 +206,10 @@ class Seen:
 
     @property
     def span_words(self) -> str:
-        """Key of words for the time that a share is of: every turn, every round, or all the time."""
-        if self.input is not None and self.input.turns and self.repeats:
+        """Key of words for the time that a share is of: every turn, every cycle, or all the time."""
+        if self.input is not None and self.input.turns == 1 and self.repeats:
             return "every turn"
-        return "every round" if self.repeats else "the time"
+        return "every cycle" if self.repeats else "the time"
 
     @cached_property
     def theta_sign(self) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -19,6 +20,8 @@ ALIKE = 1.005
 """Ways whose times have a smaller ratio take equally long."""
 ROCKER = 0.95
 """Strength of a rocker's return beside that of a slider, which is what a machine is made for."""
+COSINE = 1e-6
+"""Part of a stroke by which a motion may miss a cosine."""
 TOLD = 1.03
 """Ratio of the two ways from which on one is worth a word."""
 
@@ -29,6 +32,7 @@ def travel(seen: Seen) -> Iterator[Insight]:
         yield from dwell(seen, output)
         yield from quick_return(seen, output)
         yield from stroke(seen, output)
+        yield from halves(seen, output)
     yield from whirl(seen)
     yield from bends(seen)
     yield from level(seen)
@@ -120,6 +124,44 @@ def quick_return(seen: Seen, output: Output) -> Iterator[Insight]:
     )  # fmt: skip
 
 
+def halves(seen: Seen, output: Output) -> Iterator[Insight]:
+    """Yield that a slider moves exactly as a cosine of its crank, or how long it is in the outer half of its stroke."""
+    crank = seen.input
+    if crank is None or not crank.is_even or not seen.repeats or not output.slides:
+        return
+    when = (float(seen.time[0]), float(seen.time[-1]))
+    angle = crank.value
+    wave = np.stack([np.cos(angle), np.sin(angle), np.ones(len(angle))], axis=1)
+    fit, *_ = np.linalg.lstsq(wave, output.value, rcond=None)
+    names: dict[str, Any] = {"body": body(output.body), "crank": body(crank.body)}
+    if np.abs(wave @ fit - output.value).max() < COSINE * output.travel:
+        amplitude = float(np.hypot(fit[0], fit[1]))
+        yield insight(
+            "cosine", amplitude, "m", when, 0.9, bodies=(output.body, crank.body), amplitude=amount(amplitude, "m"),
+            **names,
+        )  # fmt: skip
+        return
+    axis = next((each for each in seen.motion.joints.values() if each.pair == "pin"
+                 and set(each.bodies) == {"ground", crank.body}), None)  # fmt: skip
+    if axis is None:
+        return
+    middle = (float(output.value.max()) + float(output.value.min())) / 2
+    centre = seen.centres[output.body]
+    distance = np.hypot(centre.x - axis.x[0], centre.y - axis.y[0])
+    sign = 1.0 if np.corrcoef(distance, output.value)[0, 1] > 0 else -1.0
+    ends = [at for at, _ in seen.crossings(output.value - middle)]
+    if len(ends) != 2 * crank.turns:
+        return
+    first = float(np.interp((ends[0] + ends[1]) / 2, seen.time, output.value))
+    inside = (ends[1] - ends[0]) * crank.turns / seen.span
+    share = inside if sign * (first - middle) > 0 else 1 - inside
+    if abs(share - 0.5) > 0.01:
+        yield insight(
+            "halves", share, "", (ends[0], ends[1]), 0.4 + 2 * abs(share - 0.5), bodies=(output.body, crank.body),
+            share=amount(share, "share"), **names,
+        )  # fmt: skip
+
+
 def _comes_back(values: Array, travel: float) -> bool:
     return abs(float(values[-1] - values[0])) < 1e-6 * travel
 
@@ -202,18 +244,15 @@ def bends(seen: Seen) -> Iterator[Insight]:
 
 
 def level(seen: Seen) -> Iterator[Insight]:
-    """Yield bodies that are carried about without turning, though no guide on ground holds them."""
-    for name, centre in seen.centres.items():
-        x, y = float(np.ptp(centre.x)), float(np.ptp(centre.y))
-        if name in seen.guided or name in seen.pinned or np.ptp(seen.theta[name]) > 1e-7:
-            continue
-        pins = [each for each in seen.motion.joints.values() if each.pair in ("pin", "slot") and name in each.bodies]
-        if len(pins) < 2 or min(x, y) < 0.0 or max(x, y) < 0.01 * seen.size:
-            continue
-        yield insight(
-            "level", max(x, y), "m", (float(seen.time[0]), float(seen.time[-1])), 0.75, bodies=(name,),
-            body=body(name), travel=amount(float(np.hypot(x, y)), "m"),
-        )  # fmt: skip
+    """Yield bodies that are carried about without turning, though nothing on ground keeps them from it."""
+    for name in seen.level:
+        centre = seen.centres[name]
+        travel = float(np.hypot(np.ptp(centre.x), np.ptp(centre.y)))
+        if travel > 0.01 * seen.size:
+            yield insight(
+                "level", travel, "m", (float(seen.time[0]), float(seen.time[-1])), 0.75, bodies=(name,),
+                body=body(name), travel=amount(travel, "m"),
+            )  # fmt: skip
 
 
 def partners(seen: Seen) -> Iterator[Insight]:

@@ -1,7 +1,7 @@
 """``make bench``: every code on every problem, the table of docs/benchmarks.md, out/bench.md and out/bench.json.
 
 python -m benchmarks                  all of it
-python -m benchmarks calls            the calls as users make them alone, only shown
+python -m benchmarks calls            the four-bar's sweep and calls as users make them alone, only shown
 python -m benchmarks clearance        a slider-crank with play beside the ideal one, only shown
 python -m benchmarks dynamics         the dynamics problems alone, only shown
 python -m benchmarks derivatives      gradients in ten numbers beside their motions, only shown
@@ -29,8 +29,6 @@ from benchmarks.dynamics import scaling
 from benchmarks.dynamics.settings import tune_all
 from benchmarks.film import measure as film
 from benchmarks.film import timing
-from benchmarks.four_bar import STEPS
-from benchmarks.harness import keep_quicker, printed_by
 from benchmarks.machines import measure as machines
 from benchmarks.rows import Bar, Row
 from benchmarks.simulations import measure as simulations
@@ -38,11 +36,6 @@ from benchmarks.start import measure as start
 from shared.stage.console import run_cli, say
 from shared.stage.errors import UserError
 
-CODES = ("mbsd", "numpy", "exudyn", "pylinkage")
-ROUNDS = 8
-BARS = {"exudyn": 20.0, "numpy": 200.0, "pylinkage": 2.0}
-"""How many times the time of mbsd each peer takes at least."""
-LARGEST_ERROR = 1e-12
 PARTS = {
     "calls": calls,
     "clearance": clearance,
@@ -91,19 +84,8 @@ def main() -> int:
 
 
 def _all() -> int:
-    best: dict[str, Row] = {}
-    for turn in range(ROUNDS):
-        for code in CODES:
-            keep_quicker(best, code, Row(**printed_by("benchmarks.four_bar.measure", code, what=code)))
-        say("bench", f"round {turn + 1} of {ROUNDS} done")
-    chosen = [best[code] for code in CODES]
-    rows.show(chosen, STEPS)
-    exact = chosen[0].error < LARGEST_ERROR
-    bars = []
-    for code, wanted in BARS.items():
-        ratio = best[code].seconds / chosen[0].seconds
-        bars.append(Bar(chosen[0].problem, wanted, ratio, code, best[code].settings, exact and ratio >= wanted))
-    everything = list(chosen)
+    everything: list[Row] = []
+    bars: list[Bar] = []
     for part in (
         calls.measured,
         batch.measured,
@@ -121,7 +103,7 @@ def _all() -> int:
         everything += more
         bars += more_bars
     films, missed = timing.rows_of_films()
-    rows.show_all(everything[len(chosen) :] + films)
+    rows.show_all(everything + films)
     rows.write(everything + films, bars)
     table.write(everything, bars)
     for line in missed:

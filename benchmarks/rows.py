@@ -67,17 +67,6 @@ def read() -> tuple[list[Row], list[Bar]]:
     return [Row(**row) for row in documents[0]], [Bar(**bar) for bar in documents[1]]
 
 
-def show(rows: Sequence[Row], steps: int) -> None:
-    """Print the rows, with the time against the first row's code."""
-    base = rows[0].seconds
-    print(f"\n{rows[0].problem}")
-    print(f"  {'code':<12}{'version':<10}{'us/step':>10}{'x mbsd':>9}{'error':>10}  settings")
-    for row in rows:
-        micro = row.seconds / steps * 1e6
-        numbers = f"{micro:>10.3f}{row.seconds / base:>9.2f}{row.error:>10.1e}"
-        print(f"  {row.code:<12}{row.version:<10}{numbers}  {row.settings}")
-
-
 def show_all(rows: Sequence[Row]) -> None:
     """Print rows of several problems, each problem with the time against the row of mbsd."""
     for problem in dict.fromkeys(row.problem for row in rows):

@@ -3,28 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from benchmarks.four_bar import ANGLES, COUPLER, CRANK, GROUND, ROCKER, exact, worst
+from benchmarks import calls
+from benchmarks.driver import Fresh
 
 VERSION = np.__version__
-SETTINGS = "Newton, numpy.linalg.solve, pos+vel+acc, tolerance 1e-10"
-REPEATS = 3
 TOLERANCE = 1e-10
-
-# Pins: (body, place on it) of both sides; body -1 is ground. Bodies: crank, coupler, rocker, frames at their middles.
-PINS = (
-    (-1, (0.0, 0.0), 0, (-CRANK / 2, 0.0)),
-    (0, (CRANK / 2, 0.0), 1, (-COUPLER / 2, 0.0)),
-    (1, (COUPLER / 2, 0.0), 2, (ROCKER / 2, 0.0)),
-    (-1, (GROUND, 0.0), 2, (-ROCKER / 2, 0.0)),
-)
 
 
 def _side(q: np.ndarray, body: int, local: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
-    """Place of a pin's side and its arm from the middle of the body."""
+    """Return the place of a pin's side and its arm from the middle of the body."""
     if body < 0:
         return np.array(local), np.zeros(2)
     c, s = math.cos(q[3 * body + 2]), math.sin(q[3 * body + 2])
@@ -34,7 +26,7 @@ def _side(q: np.ndarray, body: int, local: tuple[float, float]) -> tuple[np.ndar
 
 def _equations(q: np.ndarray, omega: np.ndarray, phi: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     residual, jac, gamma = np.zeros(9), np.zeros((9, 9)), np.zeros(9)
-    for k, (i, a, j, b) in enumerate(PINS):
+    for k, (i, a, j, b) in enumerate(calls.PINS):
         rows = slice(2 * k, 2 * k + 2)
         (pi, si), (pj, sj) = _side(q, i, a), _side(q, j, b)
         residual[rows] = pj - pi
@@ -49,17 +41,12 @@ def _equations(q: np.ndarray, omega: np.ndarray, phi: float) -> tuple[np.ndarray
 
 
 def _solve() -> np.ndarray:
-    theta, swing = (float(x[0]) for x in exact(np.zeros(1)))
-    q = np.zeros(9)
-    for body, (x, y, angle, length) in enumerate(
-        ((0.0, 0.0, 0.0, CRANK), (CRANK, 0.0, theta, COUPLER), (GROUND, 0.0, swing, ROCKER))
-    ):
-        q[3 * body :][:3] = x + length / 2 * math.cos(angle), y + length / 2 * math.sin(angle), angle
-    out = np.zeros((len(ANGLES), 3, 9))
+    q = np.array([pose[:3] for pose in calls.POSES]).ravel()
+    out = np.zeros((len(calls.ANGLES), 3, 9))
     still = np.zeros(3)
     speed = np.zeros(9)
     speed[8] = 1.0
-    for k, phi in enumerate(ANGLES):
+    for k, phi in enumerate(calls.ANGLES):
         while True:
             residual, jac, _ = _equations(q, still, phi)
             if np.abs(residual).max() < TOLERANCE:
@@ -71,11 +58,11 @@ def _solve() -> np.ndarray:
     return out
 
 
-def prepare() -> tuple[Any, Any]:
-    """``solve`` and ``error`` for measure.py."""
+def run(problem: str) -> tuple[str, Fresh, Callable[[Any], float]]:
+    """Return settings, a fresh run of the sweep and the error of its result."""
 
     def error(result: np.ndarray) -> float:
-        coupler, rocker = exact(ANGLES)
-        return max(worst(result[:, 0, 5], coupler), worst(result[:, 0, 8], rocker))
+        coupler, rocker = calls.exact(calls.ANGLES)
+        return max(calls.worst(result[:, 0, 5], coupler), calls.worst(result[:, 0, 8], rocker))
 
-    return _solve, error
+    return f"Newton, numpy.linalg.solve, pos+vel+acc, tolerance {TOLERANCE:g}", lambda: _solve, error

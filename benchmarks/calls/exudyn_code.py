@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from benchmarks import calls, exudyn_systems
-from benchmarks.driver import Fresh
 from benchmarks.exudyn_systems import STATIC, System, exu, hinge, sensor, settings
+from benchmarks.harness import Fresh
 
 VERSION = exudyn_systems.VERSION
 SPAN = calls.ANGLES[-1]

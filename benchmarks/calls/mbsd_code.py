@@ -1,4 +1,4 @@
-"""mbsd: the solver alone through a sweep; m.sweep() and m.simulate() with all their results: motion, reactions, checks."""
+"""mbsd: the solver alone through a sweep; m.sweep() and m.simulate() with all their results."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 import mbsd
 from benchmarks import calls
-from benchmarks.driver import Fresh
+from benchmarks.harness import Fresh
 from mbsd.kinematics import prepared as ready_to_solve
 from mbsd.kinematics.march import kinematics_at
 from mbsd.results.solution import Solution

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 
 from benchmarks.calls import CHANGED, FOUR_BAR, LIMIT, SIMULATION, SWEEP
-from benchmarks.driver import Run, best_rows
+from benchmarks.harness import Run, best_rows
 from benchmarks.rows import Bar, Row
 
 CODES = {

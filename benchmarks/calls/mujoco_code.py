@@ -10,7 +10,7 @@ import numpy as np
 from mujoco.rollout import rollout
 
 from benchmarks.calls import DURATION, GRAVITY, LENGTH, MASS, OUTPUTS, energy_drift
-from benchmarks.driver import Fresh
+from benchmarks.harness import Fresh
 
 VERSION = mujoco.__version__
 INERTIA = MASS * LENGTH**2 / 12

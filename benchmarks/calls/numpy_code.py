@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks import calls
-from benchmarks.driver import Fresh
+from benchmarks.harness import Fresh
 
 VERSION = np.__version__
 TOLERANCE = 1e-10

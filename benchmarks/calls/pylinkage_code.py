@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks import calls
-from benchmarks.driver import Fresh
+from benchmarks.harness import Fresh
 
 warnings.filterwarnings("ignore")
 from pylinkage.actuators import Crank  # noqa: E402
@@ -25,7 +25,7 @@ SETTINGS = "step_fast_with_kinematics, pos+vel+acc of joints"
 
 
 def run(problem: str) -> tuple[str, Fresh, Callable[[Any], float]]:
-    """Return settings, a fresh run and the error of its result; its crank has no law, so a change is of its velocity."""
+    """Return settings, a fresh run and the error of its result; a change is of the crank's velocity."""
     steps = len(calls.ANGLES) if problem == calls.FOUR_BAR else calls.STEPS
     swing = calls.START[1]
     end = calls.GROUND + calls.ROCKER * math.cos(swing), calls.ROCKER * math.sin(swing)

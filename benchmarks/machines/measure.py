@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 
 from benchmarks import machines
-from benchmarks.driver import Run, bar_of_peers, best_rows
+from benchmarks.harness import Run, bar_of_peers, best_rows
 from benchmarks.rows import Bar, Row
 
 
@@ -19,7 +19,6 @@ def prepared(code: str, problem: str) -> Run:
 
 def measured() -> tuple[list[Row], list[Bar]]:
     """Return rows of all codes on all problems, the best of the rounds, and the bars."""
-    rows = [
-        list(best.values()) for best in best_rows(__name__, dict.fromkeys(machines.PROBLEMS, machines.CODES)).values()
-    ]
-    return sum(rows, []), [bar_of_peers(of_problem, machines.BAR) for of_problem in rows]
+    best = best_rows(__name__, dict.fromkeys(machines.PROBLEMS, machines.CODES))
+    bars = [bar_of_peers(list(rows.values()), machines.BAR) for rows in best.values()]
+    return [row for rows in best.values() for row in rows.values()], bars

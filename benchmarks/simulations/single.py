@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import mbsd
-from benchmarks.driver import Run, bar_of_peers, row_of
+from benchmarks.harness import Run, bar_of_peers, row_of
 from benchmarks.rows import Bar, Row
 
 OUTPUTS = 100
@@ -379,8 +379,8 @@ def measured() -> tuple[list[Row], list[Bar]]:
                 continue
             for case in cases(problem) if code == "mbsd" or (code, problem.name) in TRIED else ():
                 version = importlib.metadata.version(code) if code != "mbsd" else mbsd.__version__
-                errors = lambda _, case=case: {"": float(np.abs(case.outputs(times) - exact).max())}  # noqa: E731
-                run = Run(version, case.settings, case.fresh, errors, {"": problem.limit})
+                error = float(np.abs(case.outputs(times) - exact).max())
+                run = Run(version, case.settings, case.fresh, lambda _, error=error: {"": error}, {"": problem.limit})
                 own_rows.append(row_of(code, problem.name, run))
         rows += own_rows
         if any(row.within_limits for row in own_rows[1:]):

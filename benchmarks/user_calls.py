@@ -1,4 +1,4 @@
-"""Calls of a user, timed in a process of its own: ``python -m benchmarks.start.user NAME`` prints seconds as JSON.
+"""Calls of a user, timed in a process of its own: ``python -m benchmarks.user_calls NAME`` prints seconds as JSON.
 
 first_* begin with ``import mbsd``; again_* are the best of many calls of a model that was solved before.
 """

@@ -12,8 +12,8 @@ import time
 import zipfile
 from pathlib import Path
 
-from benchmarks.start import user
-from shared.stage.console import say
+from benchmarks import user_calls
+from shared.stage.console import markdown_table, say
 from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from shared.stage.paths import ROOT
@@ -46,10 +46,10 @@ def measured() -> int:
             rows.append((what, "empty", _run(name, folder)))
     rows.append(("an edit in drawing, model and saving, then a pendulum", "filled before the edit", _edited()))
     rows += [(what, "filled", _run(name, None)) for name, what in AGAIN.items()]
-    lines = ["| what | compiled kernels | time |", "|---|---|--:|"]
-    for what, kernels, seconds in rows:
-        lines.append(f"| {what} | {kernels} | {_told(seconds)} |")
+    for what, _, seconds in rows:
         say("bench-start", f"{what}: {_told(seconds)}")
+    cells = [(what, kernels, _told(seconds)) for what, kernels, seconds in rows]
+    lines = markdown_table(("what", "compiled kernels", "time"), cells, numbers=[2])
     write_bytes(PAGE, replaced(PAGE.read_text(), BEGIN, END, "\n".join(lines)).encode())
     return 0
 
@@ -80,10 +80,10 @@ def _from_wheel(compiled: str) -> float:
 
 
 def _run(name: str, kernels: str | None, tree: Path = ROOT) -> float:
-    """Seconds of one function of user.py; ``kernels``: the folder for compiled code, the usual one if None."""
-    if not hasattr(user, name):
-        raise UserError(f"bench-start: benchmarks/start/user.py has no '{name}'")
-    return float(json.loads(_python(["-m", "benchmarks.start.user", name], tree, kernels)))
+    """Seconds of one function of user_calls.py; ``kernels``: the folder for compiled code, the usual one if None."""
+    if not hasattr(user_calls, name):
+        raise UserError(f"bench-start: benchmarks/user_calls.py has no '{name}'")
+    return float(json.loads(_python(["-m", "benchmarks.user_calls", name], tree, kernels)))
 
 
 def _edited() -> float:

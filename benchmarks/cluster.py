@@ -1,7 +1,11 @@
-"""``python -m benchmarks cluster``: the coordinator's cost a task, and two workers against one."""
+"""Cost of a cluster, ``python -m benchmarks cluster``: the coordinator's a task, and two workers against one.
+
+``python -m benchmarks.cluster ADDRESS COUNT`` runs workers in one process; their tasks stand for frames.
+"""
 
 from __future__ import annotations
 
+import asyncio
 import os
 import signal
 import socket
@@ -9,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -17,17 +21,17 @@ from typing import Any
 
 import psutil
 
-from benchmarks.cluster import work
 from mbsd.dealing import hand
 from mbsd.dealing.connection import workers_of
 from shared.cluster.__main__ import scheduler_command, worker_command
 from shared.cluster.address import connected
 from shared.cluster.deal import Deal, Work, content_hash
-from shared.stage.console import say
+from shared.stage.console import markdown_table, say
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
 from shared.stage.signals import end_with_parent
 
+HEAD = ("workers", "tasks", "in groups of", "wall, ms a task", "coordinator, ms a task", "scheduler, ms a task")
 COUNTS = ((64, 100), (64, 1000), (64, 10_000), (8, 10_000), (1, 1000))
 """Workers and tasks."""
 SECONDS, TASKS = 0.5, 60
@@ -35,6 +39,28 @@ SECONDS, TASKS = 0.5, 60
 WANTED = 1.8
 IDLE = 0.5
 """Load of the machine, in cores, up to which tasks that take processor time say something."""
+
+PICTURE = bytes(20_000)
+"""As large as a picture of a postage stamp."""
+
+
+def nothing(files: Mapping[str, Path], common: str, order: Any) -> bytes:
+    """A picture at once."""
+    return PICTURE
+
+
+def waiting(files: Mapping[str, Path], common: str, order: float) -> bytes:
+    """So many seconds that take no core."""
+    time.sleep(order)
+    return b"done"
+
+
+def burning(files: Mapping[str, Path], common: str, order: float) -> bytes:
+    """So many seconds of processor time."""
+    end = time.thread_time() + order
+    while time.thread_time() < end:
+        sum(range(2000))
+    return b"done"
 
 
 def measured() -> int:
@@ -46,14 +72,11 @@ def measured() -> int:
     load = os.getloadavg()[0]
     with tempfile.TemporaryDirectory() as folder:
         os.environ["MBSD_OUT"] = folder
-        print("| workers | tasks | in groups of | wall, ms a task | coordinator, ms a task | scheduler, ms a task |")
-        print("|---|---|---|---|---|---|")
-        for workers, tasks in COUNTS:
-            for largest in (1, hand.LARGEST):
-                print(_row(workers, tasks, largest), flush=True)
-        ratios = [_ratio(work.waiting, f"{SECONDS} s each")]
+        rows = [_row(workers, tasks, largest) for workers, tasks in COUNTS for largest in (1, hand.LARGEST)]
+        print(*markdown_table(HEAD, rows), sep="\n", flush=True)
+        ratios = [_ratio(waiting, f"{SECONDS} s each")]
         if load <= IDLE:
-            ratios.append(_ratio(work.burning, f"{SECONDS} s of processor time each"))
+            ratios.append(_ratio(burning, f"{SECONDS} s of processor time each"))
         else:
             say("bench", f"a load of {load:.1f}: tasks that take processor time were left out")
     return 0 if min(ratios) >= WANTED else 1
@@ -68,20 +91,19 @@ def _ratio(task: Callable[..., Any], what: str) -> float:
     return single / two
 
 
-def _row(workers: int, tasks: int, largest: int) -> str:
-    with _cluster([[sys.executable, "-m", "benchmarks.cluster.work", "ADDRESS", str(workers)]]) as (where, process):
+def _row(workers: int, tasks: int, largest: int) -> list[str]:
+    with _cluster([[sys.executable, "-m", "benchmarks.cluster", "ADDRESS", str(workers)]]) as (where, process):
         hand.LARGEST, kept = largest, hand.LARGEST
         try:
-            _deal(where, workers, work.nothing, dict.fromkeys(map(str, range(workers)), 0))  # all are known, none lacks
+            _deal(where, workers, nothing, dict.fromkeys(map(str, range(workers)), 0))  # all are known, none lacks
             scheduler = psutil.Process(process)
             before, own = scheduler.cpu_times(), time.process_time()
-            wall = _deal(where, workers, work.nothing, dict.fromkeys(map(str, range(tasks)), 0))
+            wall = _deal(where, workers, nothing, dict.fromkeys(map(str, range(tasks)), 0))
             after, own = scheduler.cpu_times(), time.process_time() - own
         finally:
             hand.LARGEST = kept
     theirs = after.user + after.system - before.user - before.system
-    costs = " | ".join(f"{1000 * seconds / tasks:.2f}" for seconds in (wall, own, theirs))
-    return f"| {workers} | {tasks} | {largest} | {costs} |"
+    return [*map(str, (workers, tasks, largest)), *(f"{1000 * seconds / tasks:.2f}" for seconds in (wall, own, theirs))]
 
 
 def _taken(workers: int, task: Callable[..., Any]) -> float:
@@ -98,7 +120,7 @@ def _taken(workers: int, task: Callable[..., Any]) -> float:
 def _deal(where: str, workers: int, task: Callable[..., Any], orders: dict[str, Any]) -> float:
     content = b"the scene"
     name = content_hash(content)
-    kind = Work(task, lambda _, result: result, len(work.PICTURE))
+    kind = Work(task, lambda _, result: result, len(PICTURE))
     with connected(where) as client:
         end = time.monotonic() + 300
         while len(workers_of(client)) < workers:
@@ -149,3 +171,16 @@ def _wait_for(port: int) -> None:
         except OSError:
             time.sleep(0.1)
     raise UserError("bench: the scheduler did not start within a minute")
+
+
+async def main(address: str, count: int) -> None:
+    """Run workers until the process is ended."""
+    from distributed import Worker
+
+    workers = [Worker(address, nthreads=1, name=f"simulated-{number}", dashboard=False) for number in range(count)]
+    await asyncio.gather(*workers)
+    await asyncio.gather(*(worker.finished() for worker in workers))
+
+
+if __name__ == "__main__":
+    asyncio.run(main(sys.argv[1], int(sys.argv[2])))

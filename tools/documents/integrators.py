@@ -21,6 +21,7 @@ from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.runs.motion import integrate
 from mbsd.dynamics.simulate import integrator_named
 from mbsd.dynamics.state import ACCEPTED, EVALUATIONS
+from shared.stage.console import markdown_table
 from tools.documents.pages import DOCS, replaced
 
 # Mechanisms on which integrators are measured: an open chain, a closed chain, and that with a stiff joint.
@@ -260,7 +261,7 @@ def measure_long_runs(tell: Callable[[str], None]) -> dict[str, dict[str, dict[s
 # Integrators measured: docs/integrators.json and the tables of docs/integrators.md (``make integrators``).
 #
 # Orders and costs take two minutes, ten thousand periods by each method another three. The picture is drawn from the
-# numbers by figures/pages/integrators.py. Methods of packages that are not installed keep their old numbers.
+# numbers by figures/simulations.py. Methods of packages that are not installed keep their old numbers.
 
 
 FILE = DOCS / "integrators.json"
@@ -293,15 +294,12 @@ def with_tables(page: str, measured: dict[str, Any]) -> str:
 
 def accuracy_table(rows: dict[str, dict[str, Any]]) -> str:
     """Return the table of orders and costs."""
-    lines = [
-        "| method | order | measured, pendulum | measured, four-bar | cost, four-bar | cost, stiff bush |",
-        "|---|---|---|---|---|---|",
-    ]
+    head = ("method", "order", "measured, pendulum", "measured, four-bar", "cost, four-bar", "cost, stiff bush")
+    cells = []
     for name, row in rows.items():
-        stated = row["stated"] or "varies"
-        costs = " | ".join(_ratio(*row[which]) for which in ("cost", "stiff cost"))
-        lines.append(f"| `{name}` | {stated} | {row['pendulum']} | {row['four-bar']} | {costs} |")
-    return "\n".join(lines)
+        orders = row["stated"] or "varies", row["pendulum"], row["four-bar"]
+        cells.append((f"`{name}`", *map(str, orders), *(_ratio(*row[which]) for which in ("cost", "stiff cost"))))
+    return "\n".join(markdown_table(head, cells))
 
 
 def _ratio(value: float, reached: bool) -> str:
@@ -312,10 +310,8 @@ def _ratio(value: float, reached: bool) -> str:
 def long_table(runs: dict[str, dict[str, Any]]) -> str:
     """Return the table of energy errors after all periods, and costs."""
     pendulum, four_bar = runs["pendulum"], runs["four-bar"]
-    lines = [
-        "| method | setting | energy error, pendulum | energy error, four-bar | evaluations a period | time, both |",
-        "|---|---|---|---|---|---|",
-    ]
+    errors = "energy error, pendulum", "energy error, four-bar"
+    cells = []
     unit = sum(run["dop853"]["seconds"] for run in runs.values())
     for name, setting in RUNS.items():
         setting_words = (
@@ -323,8 +319,7 @@ def long_table(runs: dict[str, dict[str, Any]]) -> str:
         ).replace("e-0", "e-")
         first, other = pendulum[name], four_bar[name]
         seconds = (first["seconds"] + other["seconds"]) / unit
-        lines.append(
-            f"| `{name.partition(',')[0]}` | {setting_words} | {first['errors'][-1]:.0e} | {other['errors'][-1]:.0e} "
-            f"| {first['evaluations']}, {other['evaluations']} | {seconds:.2g} |"
-        )
-    return "\n".join(lines)
+        sizes = (f"{run['errors'][-1]:.0e}" for run in (first, other))
+        evaluations = f"{first['evaluations']}, {other['evaluations']}"
+        cells.append((f"`{name.partition(',')[0]}`", setting_words, *sizes, evaluations, f"{seconds:.2g}"))
+    return "\n".join(markdown_table(("method", "setting", *errors, "evaluations a period", "time, both"), cells))

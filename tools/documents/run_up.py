@@ -22,6 +22,7 @@ from mbsd import Mechanism, four_stroke, study
 from mbsd.machines.engines.block import Block, mount_response, mounts_of_frequency
 from mbsd.machines.engines.engine import engine
 from mbsd.machines.engines.run_up import run_up
+from shared.stage.console import markdown_table
 from shared.stage.files import write_bytes
 from shared.stage.paths import out_root
 from tools.documents.figures.look import BLUE, GREEN, MOVED, PURPLE, QUIET, STYLE, plain
@@ -125,11 +126,8 @@ def last_speed(m: Mechanism) -> float:
 
 def table(runs: Any) -> str:
     """Return the largest displacement and angle with their speeds, of the runs (pandas) with one damping ratio."""
-    rates = " | ".join(f"{rate:g} rpm/s" for rate in RATES)
-    lines = [
-        f"| engine | mounts | displacement, steady | {rates} | angle, steady | {rates} |",
-        f"|{'---|' * (4 + 2 * len(RATES))}",
-    ]
+    rates = [f"{rate:g} rpm/s" for rate in RATES]
+    lines = []
     shown = runs[runs["damping_ratio"] == DAMPING_RATIO]
     for (layout, frequency), rows in shown.groupby(["layout", "frequency"], sort=False):
         cells = [str(layout), f"{frequency:g} Hz"]
@@ -137,8 +135,9 @@ def table(runs: Any) -> str:
         for name, unit in (("displacement", "mm"), ("angle", "mrad")):
             cells.append(_cell(at.loc[RATES[0]], f"steady {name}", unit))
             cells += [_cell(at.loc[rate], name, unit) for rate in RATES]
-        lines.append(f"| {' | '.join(cells)} |")
-    return "\n".join(lines)
+        lines.append(cells)
+    head = ("engine", "mounts", "displacement, steady", *rates, "angle, steady", *rates)
+    return "\n".join(markdown_table(head, lines))
 
 
 def _cell(row: Any, name: str, unit: str) -> str:

@@ -1,4 +1,4 @@
-"""``make bench``: every code on every problem, the table of docs/benchmarks.md, out/bench.md and out/bench.json.
+"""``make bench``: every code on every problem, docs/benchmarks.md, out/bench.md and out/bench.json.
 
 python -m benchmarks                  all of it
 python -m benchmarks calls            the four-bar's sweep and calls as users make them alone, only shown

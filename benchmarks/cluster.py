@@ -1,4 +1,4 @@
-"""Cost of a cluster, ``python -m benchmarks cluster``: the coordinator's a task, and two workers against one.
+"""Cost of a cluster, ``python -m benchmarks cluster``: the coordinator's, and two workers beside one.
 
 ``python -m benchmarks.cluster ADDRESS COUNT`` runs workers in one process; their tasks stand for frames.
 """

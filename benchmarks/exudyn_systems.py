@@ -1,4 +1,4 @@
-"""Systems of Exudyn that benchmarks share: bodies on pins, a hinge as a kinematic tree, sensors, settings."""
+"""Systems of Exudyn that benchmarks share: bodies on pins, a hinge as a tree, sensors, settings."""
 
 from __future__ import annotations
 
@@ -22,7 +22,10 @@ Place = Sequence[float]
 
 
 class System:
-    """A system in the making; bodies by a key, ``GROUND`` among them. Sensors give changes against the start."""
+    """A system in the making; bodies by a key, ``GROUND`` among them.
+
+    Sensors give changes against the start.
+    """
 
     def __init__(self) -> None:
         self.own = exu.SystemContainer().AddSystem()
@@ -83,7 +86,10 @@ def sensor(system: Any, node: Any, kind: str = "Coordinates") -> Any:
 
 
 def hinge(system: Any, centre: float, mass: float, inertia: float, gravity: float, angle: float = 0.0) -> Any:
-    """Return the node of a body on one hinge, a kinematic tree; its centre of mass is ``centre`` (m) from the hinge."""
+    """Return the node of a body on one hinge, a kinematic tree.
+
+    Its centre of mass is ``centre`` (m) from the hinge.
+    """
     node = system.AddNode(
         u.NodeGenericODE2(
             referenceCoordinates=[0.0], initialCoordinates=[angle], initialCoordinates_t=[0.0],

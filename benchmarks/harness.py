@@ -1,4 +1,4 @@
-"""Timing of codes: each code on each problem in a process of its own, in turn; the quickest run counts.
+"""Timing of codes, each on each problem in a process of its own, in turn; the quickest run counts.
 
 ``python -m benchmarks.harness MODULE CODE PROBLEM`` times one code on one problem and prints its row as JSON. The
 module has ``prepared(code, problem)``, which returns a :class:`Run`.
@@ -31,7 +31,10 @@ Fresh = Callable[[], Callable[[], Any]]
 
 
 class Run(NamedTuple):
-    """One code on one problem; ``errors`` of a run's result go by the names of ``limits``, the last is the row's."""
+    """One code on one problem; ``errors`` of a result go by the names of ``limits``.
+
+    The last is the row's.
+    """
 
     version: str
     settings: str
@@ -41,7 +44,10 @@ class Run(NamedTuple):
 
 
 def printed_by(module: str, *words: str, what: str) -> Any:
-    """Return the JSON that ``python -m module words`` prints in its last line. Raises UserError naming ``what``."""
+    """Return the JSON that ``python -m module words`` prints in its last line.
+
+    Raises UserError naming ``what``.
+    """
     run = subprocess.run(
         [sys.executable, "-m", module, *words],
         cwd=ROOT, env=os.environ | SINGLE, capture_output=True, text=True, check=False,
@@ -81,7 +87,9 @@ def best_of(fresh: Callable[[], Callable[[], Any]], runs: int, longest: float = 
 def best_in_turns(
     calls: Sequence[Callable[[], Any]], turns: int, clock: Callable[[], float] = time.process_time
 ) -> list[tuple[float, Any]]:
-    """Return seconds of the quickest run of each call and what its last run gave; a first run of each is not timed.
+    """Return seconds of the quickest run of each call and its last result.
+
+    A first run of each is not timed.
 
     In turns no call finds the caches of the processor as it left them itself.
     """
@@ -125,7 +133,10 @@ def bar_of_peers(rows: Sequence[Row], wanted: float) -> Bar:
 
 
 def row_of(code: str, problem: str, run: Run) -> Row:
-    """Return the row of one code: errors of a first run, which compiles and warms the cache, and the best time."""
+    """Return the row of one code: errors of a first run, and the best time.
+
+    The first run compiles and warms the cache.
+    """
     errors = run.errors(run.fresh()())
     within = all(errors[name] <= limit for name, limit in run.limits.items())
     seconds, _ = best_of(run.fresh, MOST_RUNS, LONGEST)

@@ -1,4 +1,4 @@
-"""A row of a benchmark, out/bench.json, and tables: on the console, in docs/benchmarks.md and in out/bench.md."""
+"""A row of a benchmark, out/bench.json, and tables on the console, in docs/ and in out/bench.md."""
 
 from __future__ import annotations
 
@@ -36,7 +36,10 @@ class Row:
 
 @dataclass(frozen=True)
 class Bar:
-    """Bar of a problem: at least ``wanted`` (at most, if ``most``), and what was reached against which peer."""
+    """The bar of a problem: at least ``wanted`` (at most, if ``most``), and what was reached.
+
+    ``peer``: the code that it is reached against.
+    """
 
     problem: str
     wanted: float

@@ -1,4 +1,7 @@
-"""``make bench-start``: the table of start-up in docs/benchmarks.md, each row in processes and folders of its own."""
+"""``make bench-start``: the table of start-up in docs/benchmarks.md.
+
+Each row has processes and folders of its own.
+"""
 
 from __future__ import annotations
 
@@ -80,7 +83,10 @@ def _from_wheel(compiled: str) -> float:
 
 
 def _run(name: str, kernels: str | None, tree: Path = ROOT) -> float:
-    """Seconds of one function of user_calls.py; ``kernels``: the folder for compiled code, the usual one if None."""
+    """Return the seconds of one function of user_calls.py.
+
+    ``kernels``: the folder for compiled code, the usual one if None.
+    """
     if not hasattr(user_calls, name):
         raise UserError(f"bench-start: benchmarks/user_calls.py has no '{name}'")
     return float(json.loads(_python(["-m", "benchmarks.user_calls", name], tree, kernels)))

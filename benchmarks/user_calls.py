@@ -1,4 +1,6 @@
-"""Calls of a user, timed in a process of its own: ``python -m benchmarks.user_calls NAME`` prints seconds as JSON.
+"""Calls of a user, timed: ``python -m benchmarks.user_calls NAME`` prints seconds as JSON.
+
+Each runs in a process of its own.
 
 first_* begin with ``import mbsd``; again_* are the best of many calls of a model that was solved before.
 """

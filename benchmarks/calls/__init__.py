@@ -63,7 +63,10 @@ def rocker_error(crank: np.ndarray, rocker: np.ndarray) -> float:
 
 
 def energy_drift(angle: np.ndarray, speed: np.ndarray) -> float:
-    """Return the drift (J) from the start's energy, 0; the angle (rad) is that of the rod from the horizontal."""
+    """Return the drift (J) from the start's energy, 0.
+
+    The angle (rad) is that of the rod from the horizontal.
+    """
     inertia = MASS * LENGTH**2 / 3
     energy = 0.5 * inertia * speed**2 + MASS * GRAVITY * LENGTH / 2 * np.sin(angle)
     return float(np.abs(energy).max())

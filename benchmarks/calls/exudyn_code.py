@@ -1,4 +1,4 @@
-"""Exudyn: its static solver with the crank's angle as load, the fastest of its sweeps; a tree by an explicit method.
+"""Exudyn: its static solver along the crank's angle, and a tree by an explicit method.
 
 Its static solver starts from the reference pose, so a sweep is of a fresh system. A call again is ``Assemble`` and the
 solver: it puts the system back to its start. Sensors of calls record.
@@ -22,7 +22,10 @@ SPAN = calls.ANGLES[-1]
 
 
 def four_bar(law: Callable[[float], float]) -> System:
-    """Return the linkage at crank angle 0, not yet assembled; ``law``: crank angle (rad) at a time or load factor."""
+    """Return the linkage at crank angle 0, not yet assembled.
+
+    ``law``: crank angle (rad) at a time or load factor.
+    """
     system = System()
     for key, (*pose, length) in enumerate(calls.POSES):
         system.body(key, pose, mass=length, inertia=length**3 / 12)

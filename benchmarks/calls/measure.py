@@ -1,4 +1,4 @@
-"""Rows of sweeps and calls, with a bar against each peer of the sweep, and the most that a call of ours may take."""
+"""Rows of sweeps and calls, bars against peers of the sweep, and the most that our calls may take."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ BARS = {SWEEP: 2e-3, CHANGED: 1e-3, SIMULATION: 1e-3}
 
 
 def prepared(code: str, problem: str) -> Run:
-    """Return the run of one code; its module gives settings, ``fresh`` and the error of a result by the problem."""
+    """Return the run of one code.
+
+    Its module gives settings, ``fresh`` and the error of a result by the problem.
+    """
     module = importlib.import_module(f"benchmarks.calls.{code}_code")
     settings, fresh, error = module.run(problem)
     return Run(module.VERSION, settings, fresh, lambda result: {"": error(result)}, {"": LIMIT})

@@ -1,4 +1,4 @@
-"""MuJoCo: one hinge, its rollout of all steps with the state at each; a linkage can only be driven softly."""
+"""MuJoCo: one hinge by a rollout of all steps; a linkage can only be driven softly."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""numpy by hand: reference coordinates, dense 9 x 9 Newton from the last pose, as one writes it for this linkage."""
+"""numpy by hand: dense 9 x 9 Newton from the last pose, as one writes it for this linkage."""
 
 from __future__ import annotations
 

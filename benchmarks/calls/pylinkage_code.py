@@ -1,4 +1,4 @@
-"""pylinkage: its compiled dyad solver with positions, velocities and accelerations of the joints; no forces."""
+"""pylinkage: its compiled dyad solver, with velocities and accelerations of the joints, without forces."""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Exudyn: rigid bodies with pin constraints and implicit integrators; for the pendulum also its two shorter ways.
+"""Exudyn: rigid bodies with pin constraints and implicit integrators.
+
+The pendulum has two shorter ways.
 
 The pendulum as a point mass on a distance constraint, which is Exudyn's own example of A01, or as a kinematic tree of
 one hinge, which has no constraint and so allows the explicit integrators.

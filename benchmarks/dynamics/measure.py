@@ -1,4 +1,4 @@
-"""Rows of the dynamics problems, every code at its stored settings, bars beside peers, and growth with size."""
+"""Rows of the dynamics problems at stored settings, bars beside peers, and growth with size."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def measured() -> tuple[list[Row], list[Bar]]:
 
 
 def scaling() -> tuple[list[Row], list[Bar]]:
-    """Return rows of A02 by mbsd alone at 40, 400 and 4000 loops, and the bar of the cost of a body per second."""
+    """Return rows of A02 by mbsd at 40, 400 and 4000 loops, and the bar of the cost of a body."""
     method = integrator_named("A02", "dop853")
     cases = [case(name) for name in ALONE]
     prepared = [ready(chain) for chain in cases]

@@ -1,4 +1,4 @@
-"""The best settings of every code on every problem, settings.json: the quickest that keep all errors within the limits.
+"""The best settings of every code on every problem, settings.json: the quickest within the limits.
 
     python -m benchmarks.dynamics.settings CODE CASE        (all: python -m benchmarks tune)
 

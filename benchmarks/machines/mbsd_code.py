@@ -1,4 +1,4 @@
-"""mbsd: the machines as a user writes them; sweeps give positions, velocities and accelerations of all bodies."""
+"""mbsd: the machines as a user writes them; sweeps give all velocities and accelerations, too."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rows of the machines, every code on every problem, and bars against the quickest peer within the limits."""
+"""Rows of the machines, every code on every problem, and bars against the quickest peer."""
 
 from __future__ import annotations
 

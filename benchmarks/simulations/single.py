@@ -1,4 +1,4 @@
-"""Single runs with events at equal error: a ball that comes to rest, a block on a belt, one at a stop, a cradle.
+"""Single runs with events at equal error: a ball, a block on a belt, one at a stop, a cradle.
 
 All are known in closed form; error: the largest of a coordinate at 100 outputs (m). mbsd's time is that of a whole call
 on a model that it knows, with these outputs; the peers keep nothing. They press back where mbsd has impacts: a row for
@@ -200,7 +200,10 @@ def own(problem: Problem) -> Iterator[Case]:
 
 
 def damping(code: str, problem: Problem, pulls: bool) -> float:
-    """Part of the critical damping with which a contact gives back a speed; ``pulls`` where it holds on at its end."""
+    """Return the part of the critical damping with which a contact gives back a speed.
+
+    ``pulls`` where it holds on at its end.
+    """
     restitution = {BALL: BALL_LOSS, STOP: STOP_LOSS}.get(problem.name, 1.0)
     least, most = 0.0, 0.999999
     for _ in range(60):
@@ -367,7 +370,7 @@ CODES = {"mbsd": own, "exudyn": exudyn, "mujoco": mujoco}
 
 
 def measured() -> tuple[list[Row], list[Bar]]:
-    """Return rows of all codes that are installed, and a bar for each problem that a peer solves within the limit."""
+    """Return rows of all codes installed, and a bar where a peer keeps the limit."""
     rows: list[Row] = []
     bars: list[Bar] = []
     for problem in PROBLEMS:

@@ -1,4 +1,6 @@
-"""Bank angles of V engines: a map of every family, a degree apart, with the torque of its gas (``make study-engines``).
+"""Bank angles of V engines: a map of every family, a degree apart (``make study-engines``).
+
+The torque of the gas is of a four-stroke cycle.
 
 Writes out/engines/bank_angles.csv, out/engines/engines.md and the tables of docs/engines.md.
 """
@@ -45,7 +47,10 @@ def main(words: Sequence[str]) -> None:
 
 
 def rows(maps: list[BankAngles]) -> str:
-    """Return CSV of largest forces (m r w^2) and couples (times the spacing), without and with counterweights."""
+    """Return CSV of largest forces and couples over the bank angle.
+
+    Forces are in m r w^2, couples times the spacing, both without and with counterweights.
+    """
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     extras = ("", ", counterweights")

@@ -1,4 +1,4 @@
-"""Integrators measured: docs/integrators.json and the tables of docs/integrators.md (``make integrators``)."""
+"""Integrators measured: docs/integrators.json and its page's tables (``make integrators``)."""
 
 from __future__ import annotations
 
@@ -61,7 +61,10 @@ def four_bar(pin: bool = True) -> Mechanism:
 
 
 def stiff_four_bar() -> Mechanism:
-    """The same with a stiff bush for the pin C: its damper alone asks explicit methods for steps below 0.01 ms."""
+    """Return the four-bar with a stiff bush for the pin C.
+
+    Its damper alone asks explicit methods for steps below 0.01 ms.
+    """
     m = four_bar(pin=False)
     closed = four_bar().simulate(1e-3, steps=1)
     m.start_near(**{name: math.degrees(float(closed.body(name).theta[0])) for name in ("crank", "coupler", "rocker")})
@@ -156,7 +159,10 @@ def order(rungs: list[Rung]) -> float:
 
 
 def cost(rungs: list[Rung]) -> tuple[float, bool]:
-    """Seconds for an error of TARGET, between two rungs; or those of the longest run, where none gets there."""
+    """Return the seconds for an error of TARGET, between two rungs.
+
+    Where none gets there: those of the longest run, and False.
+    """
     before = None
     for rung in rungs:
         if rung.error <= TARGET:
@@ -225,7 +231,10 @@ def swing(m: Mechanism) -> tuple[float, float]:
 
 
 def one(m: Mechanism, length: float, scale: float, name: str) -> dict[str, Any]:
-    """Largest energy errors so far, as parts of ``scale`` (J); evaluations a period of ``length`` (s); seconds."""
+    """Return the largest energy errors so far, evaluations a period and seconds of one run.
+
+    Errors are parts of ``scale`` (J); a period is ``length`` (s).
+    """
     method, setting = integrator_named(m.name, name.partition(",")[0]), RUNS[name]
     times = np.linspace(0.0, PERIODS * length, int(PERIODS * A_PERIOD) + 1)
     ready = prepare_dynamics(m, 0.0, float(times[-1]))

@@ -73,7 +73,10 @@ def main(words: Sequence[str]) -> None:
 
 
 def build(layout: str, frequency: float, damping_ratio: float, rate: float) -> Mechanism:
-    """Return the engine whose speed rises by ``rate`` (rpm/s) from rest, without weight, which only shifts its rest."""
+    """Return the engine whose speed rises by ``rate`` (rpm/s) from rest.
+
+    It has no weight, which only shifts its rest.
+    """
     mounts = mounts_of_frequency(MASS, frequency, PLACES, damping_ratio)
     block = Block(MASS, INERTIA, mounts, motor_on="ground")
     m = engine(layout, **SIZE, gas=four_stroke(10.0), block=block, acceleration=rate / RPM, name=layout)
@@ -82,7 +85,7 @@ def build(layout: str, frequency: float, damping_ratio: float, rate: float) -> M
 
 
 def measure(m: Mechanism) -> dict[str, float]:
-    """Return the largest displacement of the shaft's axis (mm) and angle of the block (mrad), with their speeds.
+    """Return the largest displacement (mm) of the shaft and angle (mrad) of the block, with their speeds.
 
     ``steady``: the same at constant speed by linear theory. ``expected``: what of it a single mode run through at this
     rate reaches in closed form. Speeds in rpm.
@@ -125,7 +128,10 @@ def last_speed(m: Mechanism) -> float:
 
 
 def table(runs: Any) -> str:
-    """Return the largest displacement and angle with their speeds, of the runs (pandas) with one damping ratio."""
+    """Return the largest displacement and angle with their speeds, of runs with one damping ratio.
+
+    ``runs`` is a table of pandas.
+    """
     rates = [f"{rate:g} rpm/s" for rate in RATES]
     lines = []
     shown = runs[runs["damping_ratio"] == DAMPING_RATIO]
@@ -145,7 +151,7 @@ def _cell(row: Any, name: str, unit: str) -> str:
 
 
 def picture(runs: Any) -> Figure:
-    """Draw displacement and angle over the rate, as parts of the steady ones, simulated and in closed form."""
+    """Draw displacement and angle over the rate, as parts of the steady ones, beside the closed form."""
     with mpl.rc_context(STYLE):  # pyright: ignore[reportArgumentType]
         layouts = list(dict.fromkeys(runs["layout"]))
         figure = Figure(figsize=(2.6 * len(layouts), 7.6), layout="constrained")

@@ -37,7 +37,10 @@ PUSHED = {"crank": {"A": 1, "B": -1}, "coupler": {"B": 1, "C": -1}, "rocker": {"
 
 
 class FourBar:
-    """A crank-rocker A-B-C-D turning at ``speed`` (rad/s) at given times (T,): (T,) angles, (T, 2) places (m)."""
+    """A crank-rocker A-B-C-D at given times (T,), in closed form.
+
+    It turns at ``speed`` (rad/s); angles are (T,), places (T, 2) (m).
+    """
 
     def __init__(self, time: np.ndarray, ground: float, lengths: dict[str, float], speed: float) -> None:
         self.lengths, zero = lengths, np.zeros_like(time)
@@ -81,7 +84,10 @@ class FourBar:
         return place + arm, velocity + w * _normal(arm), acceleration + e * _normal(arm) - w**2 * arm
 
     def efforts(self) -> np.ndarray:
-        """Return (T, 9) forces of the pins A to D (N) and the motor's torque (N m), from Newton-Euler equations."""
+        """Return (T, 9) forces of the pins A to D (N) and the motor's torque (N m).
+
+        They are those of the Newton-Euler equations.
+        """
         count = len(self.pins["A"])
         matrix, right = np.zeros((count, 9, 9)), np.zeros((count, 9))
         for row, (body, joints) in enumerate(PUSHED.items()):
@@ -218,7 +224,7 @@ def bouncing_ball(steps: int = 40, restitution: float = 0.5, mass: float = 0.2) 
 
 
 def plain_skeleton(motion: Motion, poses: int = 12) -> Skeleton:
-    """Bars between the joints of each body, and a name at each body and joint: what the plots need of a skeleton."""
+    """Return bars between the joints of each body, and names, as plots need them of a skeleton."""
     steps = np.linspace(0, len(motion.time) - 1, poses + 1).round().astype(int)[:-1]
 
     def bars(step: int) -> list[Stroke]:

@@ -123,7 +123,10 @@ def first_sentence(doc: str | None) -> str:
 
 
 def signature(name: str, function: Callable[..., Any], bound: bool = False) -> str:
-    """``name(arguments) -> result``, over several lines where it is long; ``bound`` leaves the first argument out."""
+    """Return ``name(arguments) -> result``, over several lines where it is long.
+
+    ``bound`` leaves the first argument out.
+    """
     described = inspect.signature(function)
     parameters = [p for p in list(described.parameters.values())[1 if bound else 0 :] if not _of_the_class(p)]
     words = _marked(parameters)

@@ -74,7 +74,10 @@ def _bytes(picture: Figure | Picture | Svg | bytes) -> bytes:
 
 
 def _settle(figure: Figure) -> None:
-    """Lay it out now and round where the axes are: the last bits change from run to run, and names in SVG with them."""
+    """Lay a figure out now and round where its axes are.
+
+    The last bits change from run to run, and names in SVG with them.
+    """
     figure.draw_without_rendering()
     figure.set_layout_engine("none")
     for ax in figure.axes:

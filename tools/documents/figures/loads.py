@@ -81,7 +81,7 @@ def forces(page: SimpleNamespace) -> dict[str, Figure]:
 
 
 def _engine(page: SimpleNamespace) -> Figure:
-    """The indicator diagram of the engine, its pressure over the crank's angle, and the torque of its shaft."""
+    """Draw the engine's indicator diagram, its pressure over the crank angle, and the shaft's torque."""
     figure = Figure(figsize=(10.4, 3.4), layout="constrained")
     indicated, over, torque = figure.subplots(1, 3)
     gas, crank = page.gas, np.degrees(page.gas.crank_angle)

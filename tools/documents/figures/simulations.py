@@ -115,7 +115,7 @@ def _block(place, force, page: SimpleNamespace) -> None:
 
 
 def real_joints(page: SimpleNamespace) -> dict[str, Figure]:
-    """A slider's acceleration with and without play, the way of the journal in its bearing, gears that rattle."""
+    """Draw a slider with and without play, the journal's path in its bearing, and gears that rattle."""
     figure = Figure(figsize=(10.4, 3.4), layout="constrained")
     slider, orbit, rattle = figure.subplots(1, 3)
     turns = page.ideal.t / page.TURN
@@ -161,7 +161,7 @@ COLOURS = {
 
 
 def integrators(page: SimpleNamespace) -> dict[str, Figure]:
-    """Energy over ten thousand periods by each integrator, and what a pin is open by with Baumgarte's stabilisation."""
+    """Draw the energy over ten thousand periods by each integrator, and the opening of a Baumgarte pin."""
     runs = json.loads(MEASURED.read_text())["long"]
     energy = Figure(figsize=(9.6, 4.8), layout="constrained")
     left, right = energy.subplots(1, 2, sharey=True)

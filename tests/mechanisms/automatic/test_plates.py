@@ -29,7 +29,7 @@ from shared.shapes.standards import Fit
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
 from shared.stage.scale import Scale, scale_of
-from tests.mechanisms.automatic.layouts import meets
+from tests.mechanisms.automatic.proofs import meets
 from tools.hunt.case import drawn
 from tools.hunt_parts import case
 from tools.hunt_parts.case import parts_of

@@ -25,7 +25,7 @@ from shared.shapes.build import extruded
 from shared.shapes.solid import Solid
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
-from tests.mechanisms.automatic.shafts.proofs import plan
+from tests.mechanisms.automatic.proofs import plan
 from tools.models.shaft_machines import INLINE_TWO, THROW, engine
 
 # Engines by hand: a shaft, pistons in liners, each at its place, and nothing touches.

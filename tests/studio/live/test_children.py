@@ -1,10 +1,12 @@
-"""Children end without harm to each other, with all that they have begun; the warm process may be killed or stopped."""
+"""Processes that a live page begins: children of the warm process, and their end with the server."""
 
 from __future__ import annotations
 
 import asyncio
 import os
 import signal
+import subprocess
+import sys
 import time
 from collections.abc import Awaitable, Callable
 from pathlib import Path
@@ -15,8 +17,15 @@ import pytest
 
 from studio.live.processes.children import Child
 from studio.live.processes.nursery import Nursery
+from studio.live.processes.trees import MARK
+from tests.running.processes import until
+from tests.studio.live.arm import ARM
+from tests.studio.live.served import WAIT, processes_of
 
-MODULE = "tests.studio.live.processes.ends"
+# Children end without harm to each other, with all that they have begun; the warm process may be killed or stopped.
+
+
+MODULE = "tests.studio.live.ends"
 LONG = 60.0
 Heard = list[tuple[str, str]]
 
@@ -32,7 +41,7 @@ def is_there(process: int) -> bool:
         return False
 
 
-async def until(there: Callable[[], bool]) -> None:
+async def wait_until(there: Callable[[], bool]) -> None:
     ends = time.monotonic() + LONG
     while not there():
         assert time.monotonic() < ends
@@ -56,7 +65,7 @@ class Ward:
 
     async def answer(self) -> tuple[str, str]:
         """Return the next answer."""
-        await until(lambda: bool(self.heard))
+        await wait_until(lambda: bool(self.heard))
         return self.heard.pop(0)
 
     def _hear(self, child: Child, header: dict, _: bytes) -> None:
@@ -98,7 +107,7 @@ def test_children_end_in_every_way_and_leave_nothing() -> None:
                 assert not ward.heard
         assert opened() <= before
         warm = psutil.Process(ward.nursery.warm_pid)
-        await until(lambda: not warm.children(recursive=True))  # a keeper may be on its way out
+        await wait_until(lambda: not warm.children(recursive=True))  # a keeper may be on its way out
 
     with_ward(test)
 
@@ -128,7 +137,7 @@ def test_a_child_whose_keeper_was_stopped_ends_too(tmp_path: Path) -> None:
         child.kill()
         await asyncio.wait_for(child.task, LONG)
         others = [int(number) for number in file.read_text().split()]
-        await until(lambda: not any(map(is_there, [link.keeper, child.pid, *others])))
+        await wait_until(lambda: not any(map(is_there, [link.keeper, child.pid, *others])))
 
     with_ward(test)
 
@@ -142,7 +151,7 @@ def test_orphans_of_a_killed_keeper_end_with_the_server(tmp_path: Path) -> None:
         assert child._link is not None
         os.kill(child._link.keeper, signal.SIGKILL)
         assert "was ended from outside" in (await ward.answer())[1]
-        await until(lambda: not is_there(child.pid))
+        await wait_until(lambda: not is_there(child.pid))
 
     with_ward(test)
     others = [int(number) for number in file.read_text().split()]
@@ -198,7 +207,7 @@ def test_a_warm_process_that_is_killed_or_stopped_is_replaced(number: signal.Sig
 def test_a_warm_process_that_is_stopped_while_it_loads_is_replaced() -> None:
     async def test(ward: Ward) -> None:
         child = ward.child("answers")
-        await until(lambda: ward.nursery.warm_pid is not None)
+        await wait_until(lambda: ward.nursery.warm_pid is not None)
         os.kill(ward.nursery.warm_pid, signal.SIGSTOP)
         assert (await ward.answer())[0] == "motion"
         child.kill()
@@ -217,3 +226,46 @@ def test_a_warm_process_that_cannot_begin_is_an_error_and_tried_again(monkeypatc
         child.kill()
 
     with_ward(test)
+
+
+# When the server is killed, nothing of what the author's code has begun goes on.
+
+
+BEGINS = """
+import ctypes
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).parent
+subprocess.Popen([sys.executable, "-c", "import os, time; os.fork() or os.setsid(); time.sleep(600)"],
+                 start_new_session=True)
+if os.fork() == 0:
+    ctypes.PyDLL(None).sleep(600)  # holds Python's lock
+"""
+LOOPS = BEGINS + '(HERE / "making").touch()\nwhile True:\n    pass\n'
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads the environment of other processes in /proc")
+def test_nothing_outlives_a_server_that_was_killed(tmp_path: Path) -> None:
+    """Servers that end in order are checked by each test that has one (served.py)."""
+    folder = tmp_path / "mechanisms"
+    (folder / "arm").mkdir(parents=True)
+    (folder / "arm" / "mechanism.py").write_text(ARM + BEGINS)
+    (folder / "arm" / "parts.py").write_text(LOOPS)
+    environment = os.environ | {"MBSD_TEST_PARTS": str(folder), "MBSD_OUT": str(tmp_path / "out")}
+    command = [sys.executable, "-m", "tests.studio.live.serving", "arm"]
+    with subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, start_new_session=True) as server:
+        try:
+            until((folder / "arm" / "making").exists, WAIT)
+            warm = next(
+                child for child in psutil.Process(server.pid).children() if "forking" in " ".join(child.cmdline())
+            )
+            mark = warm.environ()[MARK]
+            assert len(processes_of(mark)) >= 9, "the warm process, two keepers, what they keep and what that has begun"
+            server.kill()
+            server.wait(WAIT)
+            until(lambda: not processes_of(mark), WAIT)
+        finally:
+            server.kill()

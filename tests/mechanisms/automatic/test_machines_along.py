@@ -17,7 +17,7 @@ from mbsd.machines.engines.valve_train import ValveTrain
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.shafts.along import Along
 from shared.stage.errors import UserError
-from tests.mechanisms.automatic.shafts.proofs import checked
+from tests.mechanisms.automatic.proofs import checked
 from tools.models import shaft_machines
 from tools.models.shaft_machines import SINGLE, engine, legs, press
 

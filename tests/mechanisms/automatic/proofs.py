@@ -1,12 +1,16 @@
-"""Rules of the layout of automatic parts, checked anew."""
+"""Proofs of automatic parts: rules of the layout checked anew, solids built, meshed and kept apart."""
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.layout.items import span, spans_meet
 from mechanisms.stages.automatic.layout.planar import core_gaps, placed
+from tools.hunt_parts import case
+from tools.models import shaft_machines as models
 
 
 def meets(made: Automatic) -> list[str]:
@@ -28,3 +32,25 @@ def meets(made: Automatic) -> list[str]:
             if (core_gaps(seen[i], seen[j]) < first.shape.radius + second.shape.radius).any():
                 meetings.append(f"{first.what} meets {second.what}")
     return meetings
+
+
+if TYPE_CHECKING:
+    from mbsd import Mechanism
+    from shared.shapes.bodies import Bodies
+
+
+def checked(m: Mechanism) -> tuple[Automatic, Bodies]:
+    """The plan and the solids. Raises UserError where a solid is unsound, or two come too near."""
+    solution = m.sweep(steps=90)
+    made = Automatic(m, solution)
+    bodies = made.solids()
+    pieces = case.meshed(bodies)
+    assert not case.overlapping(pieces)
+    case.proven(m, solution, bodies, pieces)
+    return made, bodies
+
+
+def plan(of: str) -> Automatic:
+    """Return the plan of an engine of tools/models/shaft_machines.py by its name there, without solids."""
+    m = models.engine(getattr(models, of))
+    return Automatic(m, m.sweep(steps=90))

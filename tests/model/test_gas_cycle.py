@@ -25,7 +25,7 @@ from mbsd import (
 from mbsd.arrays.chambers import chambers
 from tools.models.engines import BORE, ROD, THROW, UP, petrol, radial, scotch_yoke, slider_crank
 
-CASE = json.loads((Path(__file__).parents[2] / "published/reference/engine_wiebe.json").read_text())
+CASE = json.loads((Path(__file__).parents[1] / "published/reference/engine_wiebe.json").read_text())
 GIVEN = CASE["given"]
 AREA = math.pi / 4 * BORE**2
 DISPLACED = 2 * THROW * AREA

@@ -300,10 +300,7 @@ def _exudyn_system(exu: Any, u: Any, problem: Problem, stiffness: float) -> tupl
     def rub(other: Any, sliding: float, **more: Any) -> None:
         data = u.NodeGenericData(initialCoordinates=[0, 0, 0], numberOfDataCoordinates=3)
         friction = u.CoordinateSpringDamperExt(
-            markerNumbers=[other, markers[0]],
-            nodeNumber=system.AddNode(data),
-            dynamicFrictionForce=sliding,
-            **more,
+            markerNumbers=[other, markers[0]], nodeNumber=system.AddNode(data), dynamicFrictionForce=sliding, **more
         )
         system.AddObject(friction)
 

@@ -116,14 +116,7 @@ def planned(layout: str, **given) -> Along:
 
 @pytest.mark.parametrize(
     ("layout", "given"),
-    [
-        ("I1", SIZE),
-        ("I4", SIZE),
-        ("V2", SIZE | V),
-        ("V6", V6),
-        ("V8", SIZE | V),
-        ("flat-4", SIZE | {"spacing": 0.062}),
-    ],
+    [("I1", SIZE), ("I4", SIZE), ("V2", SIZE | V), ("V6", V6), ("V8", SIZE | V), ("flat-4", SIZE | {"spacing": 0.062})],
 )
 def test_a_shaft_and_what_it_carries_turn_without_force_and_couple(layout: str, given: dict[str, float]) -> None:
     """Masses of rods and half the pistons on the pins, and the solid itself, to a thousandth of one throw."""

@@ -73,10 +73,7 @@ def test_one_sound_piece(eyes: list[tuple[float, float, Eye]]) -> None:
 
 
 @given(
-    count=st.integers(3, 400),
-    waves=st.integers(1, 12),
-    height=st.floats(0.0, 300.0),
-    length=st.floats(20.0, 5000.0),
+    count=st.integers(3, 400), waves=st.integers(1, 12), height=st.floats(0.0, 300.0), length=st.floats(20.0, 5000.0)
 )
 def test_a_plainer_hull_keeps_all_points(count: int, waves: int, height: float, length: float) -> None:
     """Wavy slots of any length: none is left out by more than FLAT."""

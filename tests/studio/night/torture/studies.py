@@ -106,7 +106,7 @@ def _start(project: Project) -> subprocess.Popen[bytes]:
     place = _folder(project)
     with (place / "said.txt").open("ab") as said:
         return subprocess.Popen(
-            [sys.executable, "-m", "tests.studio.night.torture.cluster.studies", project.workers.address, str(place)],
+            [sys.executable, "-m", "tests.studio.night.torture.studies", project.workers.address, str(place)],
             cwd=ROOT, env=os.environ | {"PYTHONPATH": str(ROOT)}, stdin=subprocess.DEVNULL, stdout=said, stderr=said,
             preexec_fn=partial(end_with_parent, signal.SIGTERM),
         )  # fmt: skip

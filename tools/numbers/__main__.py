@@ -1,4 +1,10 @@
-"""``python -m tools.numbers`` check [TEXT] | record | keep [TEXT] | within TOLERANCE [TEXT]: see the package.
+"""``python -m tools.numbers`` check [TEXT]
+
+record
+
+keep [TEXT]
+
+within TOLERANCE [TEXT].
 
 ``python -m tools.numbers events`` check [TEXT] | record [TEXT] | loop [TEXT]: see tools/numbers/events.
 

@@ -22,6 +22,7 @@ from mbsd.kinematics.groups.groups import KIND
 from mbsd.kinematics.groups.tables import NAMES
 from mbsd.results.solution import Solution
 from tools.models.assur_models import MODELS
+from tools.models.linkages import four_bar
 
 PAIRS = ("q", "v", "a")
 
@@ -165,14 +166,7 @@ def test_forces_of_all_sorts() -> None:
 
 
 def _light() -> Mechanism:
-    m = Mechanism("light")
-    crank, coupler, rocker = m.bar("crank", 0.1, 1.0), m.bar("coupler", 0.38), m.bar("rocker", 0.3, 1.0)
-    m.revolute("O", m.ground.at(0, 0), crank.start)
-    m.revolute("A", crank.end, coupler.start)
-    m.revolute("B", coupler.end, rocker.end)
-    m.revolute("C", m.ground.at(0.4, 0), rocker.start)
-    m.start_near(crank=10, coupler=45, rocker=90)
-    return m
+    return four_bar(0.4, 0.1, 0.38, 0.3, (45.0, 90.0), masses=(1.0, None, 1.0), law=None, at=10.0)
 
 
 def test_bodies_without_mass() -> None:
@@ -199,14 +193,8 @@ def test_multipliers_of_outputs_are_those_of_reference_coordinates_to_the_last_d
 
 def double_rocker() -> Mechanism:
     """Neither lever turns round: both pass poses in which they tell the other's place badly."""
-    m = Mechanism("double rocker")
-    left, coupler, right = m.bar("left", 0.3, 1.0), m.bar("coupler", 0.2, 0.5), m.bar("right", 0.32, 1.0)
-    m.revolute("O", m.ground.at(0, 0), left.start)
-    m.revolute("A", left.end, coupler.start)
-    m.revolute("B", coupler.end, right.end)
-    m.revolute("C", m.ground.at(0.4, 0), right.start)
-    m.start_near(left=70, coupler=5, right=110)
-    m.start_moving(left=8.0)
+    m = four_bar(0.4, 0.3, 0.2, 0.32, (5.0, 110.0), masses=(1.0, 0.5, 1.0), law=None, at=70.0)
+    m.start_moving(crank=8.0)
     return m
 
 

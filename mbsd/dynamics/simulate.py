@@ -177,12 +177,7 @@ class Between:
 
 
 def with_phase_changes(
-    ready: PreparedDynamics,
-    run: Run,
-    recording: Recording,
-    events: list[Event],
-    grid: np.ndarray,
-    asked: Asked | None,
+    ready: PreparedDynamics, run: Run, recording: Recording, events: list[Event], grid: np.ndarray, asked: Asked | None
 ) -> tuple[Recording, Asked | None]:
     """The recording with rows beside each change of phase, and what was asked for with them.
 

@@ -121,12 +121,7 @@ def _solution(m: Model, ready: Prepared, grid: np.ndarray, march: March) -> Solu
 
 
 def _named(
-    m: Model,
-    ready: Prepared,
-    march: March,
-    motion: tuple[np.ndarray, ...],
-    loads: Efforts,
-    states: np.ndarray | None,
+    m: Model, ready: Prepared, march: March, motion: tuple[np.ndarray, ...], loads: Efforts, states: np.ndarray | None
 ) -> Solution:
     """Return the results by name of a ``motion``: times (T,), drives, q, v and a (T, 3 nb)."""
     grid, drives, q, v, a = motion

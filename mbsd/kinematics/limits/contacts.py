@@ -20,8 +20,6 @@ from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
 
 if TYPE_CHECKING:
-    from mbsd.arrays.packing import Packed
-    from mbsd.model.mechanism import Model
     from mbsd.results.solution import Solution
 
 

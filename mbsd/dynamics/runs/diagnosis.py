@@ -272,6 +272,7 @@ def refusal(run: Run, status: int, state: run_state.State) -> SimulationError:
     packed, method = run.ready.packed, run.method
     bodies = len(packed.body_names) - packed.states
     time, speeds = state.clock[run_state.TIME], np.abs(state.y[1].reshape(-1, 3)[1:bodies])
+    run.ready.following.wheels.refuse_met(float(time), state.y[0])
     fastest = packed.body_names[1 + int(np.argmax((speeds / [packed.size, packed.size, 1]).max(1)))]
     where = f"{packed.name}: {method.name} stops at t = {time:.6g} s, where '{fastest}' is fastest"
     if status == run_state.NO_CONVERGENCE:

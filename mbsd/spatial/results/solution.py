@@ -59,6 +59,12 @@ class Solution(Suggesting):
     """Turns (rad) and slides (m) that start_near gave."""
     inserted_steps: int = 0
     """Steps added between outputs to stay on the branch."""
+    steps: int = 0
+    """Steps of a simulation."""
+    work: np.ndarray | None = field(default=None, repr=False)
+    """(T,) of drivers since the start (J), of a simulation."""
+    changes: tuple[str, ...] = ()
+    """Changes of the given start that made a simulation consistent."""
 
     @cached_property
     def t(self) -> np.ndarray:
@@ -144,7 +150,7 @@ class Solution(Suggesting):
     @cached_property
     def stats(self) -> Stats:
         """How well the motion fulfils its equations: largest residuals over all steps and rows."""
-        return Stats(*residuals(self.packed, self.motion), len(self.motion.times), self.inserted_steps)
+        return Stats(*residuals(self.packed, self.motion), self.steps or len(self.motion.times), self.inserted_steps)
 
     def _begin(self, joint: Joint) -> float:
         """Return the turn (rad) near which a joint starts, as a driver or start_near has it."""

@@ -1,1 +1,1 @@
-"""Simulations in space: reference coordinates with Euler parameters on the compiled loop of planar simulations."""
+"""Simulations in space: reference coordinates with Euler parameters on the planar compiled loop."""

@@ -68,7 +68,7 @@ def envelope_of(row_body: np.ndarray, kept: np.ndarray) -> tuple[Envelope, Facto
 
 @internal
 def factor(env, fac, jac, inverse):
-    """Factor S of J in body axes (m, 6 k) and W^-1 (3 + 6 n,); returns the least part of a row that is its own."""
+    """Factor S of J (m, 6 k) in body axes; returns the least part of a row that is its own."""
     low = fac.low
     pivot = fac.pivot
     for r in range(env.rows.shape[0]):

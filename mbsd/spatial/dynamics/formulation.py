@@ -91,7 +91,7 @@ def _to_world(dyn, ws, v):
 
 @internal
 def _respond(dyn, ws, force, gamma, a, lam):
-    """Fill a and lam (m,) with M a + J^T lam = force and J a = gamma, by factors of this pose; force is overwritten."""
+    """Fill a, lam (m,) of M a + J^T lam = force, J a = gamma, by factors of this pose; force is spent."""
     env = dyn.envelope
     side = dyn.factors.side
     for r in range(lam.shape[0]):
@@ -249,7 +249,7 @@ def _count_turns(dyn, scratch, q):
 
 @internal
 def settle(dyn, scratch, t, state, fresh):
-    """Count turns from the accepted state on; returns whether rows in use come near to depend on each other."""
+    """Count turns from the accepted state on; returns whether other rows should be looked for."""
     _count_turns(dyn, scratch, state[0])
     for n in range(scratch.ws.guess.shape[0]):
         scratch.ws.guess[n] = scratch.ws.turn[n]

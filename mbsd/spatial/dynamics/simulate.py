@@ -35,7 +35,7 @@ from mbsd.spatial.model.rotation import rotation_matrix
 from mbsd.spatial.results.solution import Solution
 
 OUTPUTS_LONGEST = 25
-"""A step covers this part of the duration at most."""
+"""A step covers this part of the duration at most where drivers move, so that short ways are not stepped over."""
 SMALLEST_STEP = 1e-13
 """Part of the longest step at which a run gives up."""
 OWN = 0.0025
@@ -126,7 +126,7 @@ class _Run:
             allowed[0, 7 * b - 4 : 7 * b - 1] *= packed.size
             allowed[1, 6 * b - 3 : 6 * b] *= packed.size
         growing = np.full_like(allowed, self.tolerance)
-        longest = float(self.grid[-1] - self.grid[0]) / OUTPUTS_LONGEST
+        longest = float(self.grid[-1] - self.grid[0]) / (OUTPUTS_LONGEST if packed.motions else 1)
         return Settings(allowed, float(self.tolerance), growing, longest, SMALLEST_STEP * longest, longest, np.zeros(0))
 
     def followed(self) -> Solution:

@@ -1,4 +1,4 @@
-"""Velocities at the start of a simulation: what start_moving gives is held as far as joints and drivers allow.
+"""Velocities at the start of a simulation: given ones are held as far as joints and drivers allow.
 
 J v = nu,   P v = given,   kinetic energy of what was left open as small as it can be
 """

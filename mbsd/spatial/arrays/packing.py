@@ -14,10 +14,10 @@ from mbsd.model.laws import Motion
 from mbsd.spatial.arrays.tables import Tables
 from mbsd.spatial.equations.evaluation import measure
 from mbsd.spatial.equations.system import System, Workspace, workspace_for
-from mbsd.spatial.model.body import Body, Marker
+from mbsd.spatial.model.body import Body
 from mbsd.spatial.model.joint import Joint
 from mbsd.spatial.model.mechanism import Model
-from mbsd.spatial.model.rotation import euler_parameters, rotation_matrix
+from mbsd.spatial.model.rotation import euler_parameters
 from mbsd.spatial.model.rows import Row, along, turn
 
 
@@ -42,8 +42,6 @@ class Packed:
     ws: Workspace
     size: float
     """A length of the mechanism (m)."""
-    watched: list[str]
-    """Joints that turn, by whose number ``turn_angles`` gives theirs."""
     forces: Sequence[Any] = field(default=())
 
     @property
@@ -142,12 +140,6 @@ def moved(q: np.ndarray, delta: np.ndarray) -> np.ndarray:
     return out
 
 
-def frames_of(body: Body, r: np.ndarray, e: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return places (T, 3) and rotations (T, 3, 3) of a body's frame from r (T, 3) and e (T, 4)."""
-    rotation = rotation_matrix(e) @ body.principal[1].T
-    return r - rotation @ np.array(body.com), rotation
-
-
 def pack(m: Model, extra: Sequence[tuple[Joint, Row]] = ()) -> Packed:
     """Return the arrays of a mechanism; rows ``extra`` of joints come last and belong to no reaction."""
     bodies = list(m.bodies.values())
@@ -183,7 +175,6 @@ def pack(m: Model, extra: Sequence[tuple[Joint, Row]] = ()) -> Packed:
     return Packed(
         name=m.name, bodies=bodies, joints=joints, motions=motions, row_joint=np.array(row_joint, np.int64),
         row_unit=units, driver_rows=driver_rows, system=system, ws=workspace_for(system), size=size_of(m),
-        watched=[joint.name for joint in m.joints.values() if joint.kind.turns],
     )  # fmt: skip
 
 
@@ -205,9 +196,3 @@ def size_of(m: Model) -> float:
 def start_row(joint: Joint) -> Row:
     """Return the row that measures the turn or the slide of a joint."""
     return turn(joint.i, joint.j) if joint.kind.turns else along(joint.i, "z", joint.j)
-
-
-def marker_motion(marker: Marker) -> tuple[np.ndarray, np.ndarray]:
-    """Return the place (3,) of a marker from the centre of mass, and its axes (3, 3), in principal axes."""
-    own = marker.body.principal[1].T
-    return own @ (np.array(marker.place) - np.array(marker.body.com)), own @ marker.axes

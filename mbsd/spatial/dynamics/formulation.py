@@ -22,6 +22,7 @@ from mbsd.dynamics.state import NEXT, WORK
 from mbsd.equations.laws import evaluate_laws
 from mbsd.spatial.dynamics.envelope import factor, solve
 from mbsd.spatial.equations.evaluation import evaluate_gamma, evaluate_nu, evaluate_position
+from mbsd.spatial.equations.forces import apply_forces
 
 
 class Switches(NamedTuple):
@@ -58,6 +59,8 @@ class SpaceDynamics(NamedTuple):
     per_size: Any
     world: Any
     """(3 + 6 n,) scratch: velocities with w in the world."""
+    pushed: Any
+    """(m,) scratch: multipliers of forces."""
     limit: Any
     """(1,) part of a row below which other rows are looked for; 0: never."""
     turns: Any
@@ -119,7 +122,7 @@ def _respond(dyn, ws, force, gamma, a, lam):
 
 @apart
 def accelerate(dyn, scratch, t, state, a, lam):
-    """See formulation.py of the plane; returns the power of the drivers (W)."""
+    """See formulation.py of the plane; returns the power of forces and drivers (W)."""
     ws = scratch.ws
     v = state[1]
     force = scratch.force
@@ -129,6 +132,11 @@ def accelerate(dyn, scratch, t, state, a, lam):
     evaluate_position(dyn.system, state[0], scratch.drive, ws)
     _to_world(dyn, ws, v)
     evaluate_gamma(dyn.system, dyn.world, scratch.drive, ws, gamma)
+    power = 0.0
+    for c in range(ws.load.shape[0]):
+        ws.load[c] = 0.0
+    if dyn.system.force.shape[0] > 0:
+        power = apply_forces(dyn.system, dyn.laws, t, dyn.world, ws, ws.load, dyn.pushed)
     _to_body_axes(dyn, ws)
     scratch.report[0] = factor(dyn.envelope, dyn.factors, ws.jac, dyn.inverse)
     for c in range(force.shape[0]):
@@ -139,8 +147,13 @@ def accelerate(dyn, scratch, t, state, a, lam):
         force[c] = (i[1] - i[2]) * v[c + 1] * v[c + 2]
         force[c + 1] = (i[2] - i[0]) * v[c + 2] * v[c]
         force[c + 2] = (i[0] - i[1]) * v[c] * v[c + 1]
+        m = ws.rotation[b]
+        for k in range(3):
+            force[c - 3 + k] += ws.load[c - 3 + k]
+            force[c + k] += m[0, k] * ws.load[c] + m[1, k] * ws.load[c + 1] + m[2, k] * ws.load[c + 2]
     _respond(dyn, ws, force, gamma, a, lam)
-    power = 0.0
+    for r in range(dyn.system.held, lam.shape[0]):
+        lam[r] = dyn.pushed[r]
     for n in range(dyn.system.driven.shape[0]):
         power -= lam[dyn.system.driven[n, 0]] * scratch.drive[dyn.system.driven[n, 1], 1]
     return power

@@ -106,7 +106,7 @@ class _Run:
         return SpaceDynamics(
             system=packed.system, laws=self.laws, loads=Switches(np.zeros((1, WIDTH))), schur=none, sliding=none,
             envelope=envelope, factors=factors, inertia=inertia, inverse=inverse, weight=weight, per_size=per_size,
-            world=np.zeros(6 * nb - 3), limit=np.array([limit]), turns=self.turns,
+            world=np.zeros(6 * nb - 3), pushed=np.zeros(len(packed.ws.phi)), limit=np.array([limit]), turns=self.turns,
         )  # fmt: skip
 
     def _scratch(self) -> Scratch:
@@ -114,7 +114,7 @@ class _Run:
         factors: Any = ()
         return Scratch(
             ws=packed.ws, factors=factors, drive=np.zeros((len(packed.motions) + 1, 3)), force=np.zeros(entries),
-            multipliers=np.zeros(len(packed.row_joint)), change=np.zeros((2, packed.freedoms + 3)),
+            multipliers=np.zeros(len(packed.ws.phi)), change=np.zeros((2, packed.freedoms + 3)),
             state=np.zeros((2, entries)), stages=np.zeros((DOP853.stages, 2, entries)), power=np.zeros(DOP853.stages),
             dense=np.zeros((8, 2, entries)), dense_work=np.zeros(7), full=full_matrices(0, 0), report=np.zeros(4),
         )  # fmt: skip
@@ -126,15 +126,15 @@ class _Run:
             allowed[0, 7 * b - 4 : 7 * b - 1] *= packed.size
             allowed[1, 6 * b - 3 : 6 * b] *= packed.size
         growing = np.full_like(allowed, self.tolerance)
-        longest = float(self.grid[-1] - self.grid[0]) / (OUTPUTS_LONGEST if packed.motions else 1)
+        longest = float(self.grid[-1] - self.grid[0]) / (OUTPUTS_LONGEST if packed.motions or packed.forces else 1)
         return Settings(allowed, float(self.tolerance), growing, longest, SMALLEST_STEP * longest, longest, np.zeros(0))
 
     def followed(self) -> Solution:
         """Return the motion until the last output. Raises SimulationError where it cannot go on."""
         packed, end = self.packed, float(self.grid[-1])
         limit = OWN if self.mobility.redundant_rows else 0.0
-        state = start_state(self.y, len(packed.row_joint), float(self.grid[0]))
-        out = output_for(self.grid, len(self.q), len(packed.row_joint))
+        state = start_state(self.y, len(packed.ws.phi), float(self.grid[0]))
+        out = output_for(self.grid, len(self.q), len(packed.ws.phi))
         scratch, settings, dyn = self._scratch(), self._settings(), self._dynamics(limit)
         while True:
             status = DOP853.advance(dyn, scratch, state, out, settings, end, STEPS)
@@ -161,20 +161,19 @@ class _Run:
         packed, count = self.packed, len(self.grid)
         q, body = np.ascontiguousarray(out.y[:, 0]), packed.freedoms + 3
         v, a = (_to_worlds(packed, q, part[:, :body]) for part in (out.y[:, 1], out.a))
-        drives, lam = packed.drives(self.grid), out.lam
-        if self.mobility.redundant_rows:
-            lam = least_norm(packed, drives, q, v, a, self.turns)
-        wrench = np.zeros((count, len(packed.passive_joints), 6))
-        wrenches_along(packed.system, drives, q, packed.ws, lam, wrench)
-        none = np.zeros(count)
+        drives, none = packed.drives(self.grid), np.zeros(count)
         motion = DrivenMotion(
             times=self.grid, drives=drives, stride=none, q=q, dq=q, ddq=q, v=v, a=a, turn=self.turns,
-            turn_rate=self.turns, residual=none, margin=out.margin, determinant=none[:, None], lam=lam, wrench=wrench,
+            turn_rate=self.turns, residual=none, margin=out.margin, determinant=none[:, None], lam=out.lam,
+            wrench=np.zeros((count, len(packed.passive_joints), 6)),
         )  # fmt: skip
-        every = np.ones(count, bool)
+        if self.mobility.redundant_rows:
+            motion = motion._replace(lam=least_norm(packed, self.laws, motion))
+        wrenches_along(packed.system, drives, q, packed.ws, motion.lam, motion.wrench)
         return Solution(
-            self.m, packed, motion, every, self.mobility, dict(self.m.starts), 0, steps, out.work, self.changes
-        )
+            self.m, packed, motion, np.ones(count, bool), self.mobility, self.laws, dict(self.m.starts),
+            steps=steps, work=out.work, changes=self.changes,
+        )  # fmt: skip
 
 
 def _refuse_superfluous_drivers(packed: Packed, independent: list[int], mobility: Mobility) -> None:

@@ -26,6 +26,7 @@ from mbsd.spatial.model.body import (
     orientation_given,
     place_given,
 )
+from mbsd.spatial.model.force import Force
 from mbsd.spatial.model.joint import Joint
 from mbsd.spatial.model.solids import along_x, ball, cylinder, cylinder_mass
 
@@ -42,7 +43,7 @@ class Model(Suggesting):
     bodies: dict[str, Body] = field(default_factory=lambda: Named("body"))
     joints: dict[str, Joint] = field(default_factory=lambda: Named("joint"))
     drivers: dict[str, Joint] = field(default_factory=lambda: Named("driver"))
-    forces: dict[str, Any] = field(default_factory=lambda: Named("force"))
+    forces: dict[str, Force] = field(default_factory=lambda: Named("force"))
     contacts: dict[str, Any] = field(default_factory=lambda: Named("contact"))
     traces: dict[str, Marker] = field(default_factory=lambda: Named("traced point"))
     starts: dict[str, float] = field(default_factory=dict)

@@ -110,7 +110,6 @@ def swings(seen: Seen) -> Iterator[Insight]:
     if not len(gaps) or np.ptp(gaps) > 0.1 * gaps.mean():
         return
     period = float(gaps.mean())
-    middle = float(output.value[-1]) if _dies(tops) else float(np.mean([v for _, v in tops]) - output.travel / 2)
     small = small_period(seen, output)
     if small is not None and period > 1.02 * small:
         yield insight(
@@ -123,16 +122,15 @@ def swings(seen: Seen) -> Iterator[Insight]:
             "swing", period, "s", (times[0], times[1]), 0.45, bodies=(output.body,), body=body(output.body),
             period=amount(period, "s"),
         )  # fmt: skip
-    if _dies(tops) and len(tops) >= LEAST_SWINGS:
-        heights = np.array([value - middle for _, value in tops])
-        heights = heights[heights > 0]
-        if len(heights) >= LEAST_SWINGS:
-            kept = float((heights[-1] / heights[0]) ** (1 / (len(heights) - 1)))
-            if kept < 0.995:
-                yield insight(
-                    "decay", kept, "", (times[0], times[-1]), 0.7, bodies=(output.body,), body=body(output.body),
-                    lost=amount(1 - kept, "share"),
-                )  # fmt: skip
+    ends = sorted([*tops, *((at, -value) for at, value in peaks(seen.time, -output.value))])
+    widths = np.abs(np.diff([value for _, value in ends]))
+    if _dies(tops) and len(tops) >= LEAST_SWINGS and np.all(np.diff(widths) < 0):
+        kept = float((widths[-1] / widths[0]) ** (2 / (len(widths) - 1)))
+        if kept < 0.995:
+            yield insight(
+                "decay", kept, "", (ends[0][0], ends[-1][0]), 0.7, bodies=(output.body,), body=body(output.body),
+                lost=amount(1 - kept, "share"),
+            )  # fmt: skip
 
 
 def slides(seen: Seen) -> Iterator[Insight]:
@@ -274,8 +272,8 @@ def sticking(seen: Seen, name: str, contact: ContactMotion) -> Iterator[Insight]
 def orbits(seen: Seen) -> Iterator[Insight]:
     """Yield how near and how far two bodies come that attract each other, and their speeds there."""
     for name, force in seen.motion.forces.items():
-        if force.kind != "gravitation" or force.value is None:
-            continue
+        if force.value is None or len(force.actions) != 2 or max(force.potential) >= 0:
+            continue  # what attracts holds less than nothing
         distance = np.asarray(force.value)
         near, far = int(distance.argmin()), int(distance.argmax())
         ratio = float(distance[far] / distance[near])
@@ -303,7 +301,7 @@ def orbits(seen: Seen) -> Iterator[Insight]:
 def isolation(seen: Seen) -> Iterator[Insight]:
     """Yield how much more gently a sprung body is shaken than what is at the other end of its spring."""
     for name, force in seen.motion.forces.items():
-        if (force.look != "coil" and "spring" not in force.kind) or len(force.actions) != 2:
+        if force.look != "coil" or len(force.actions) != 2:
             continue
         bodies = [action.body for action in force.actions if action.body in seen.centres]
         if len(bodies) != 2 or not any(seen.motion.gravity):

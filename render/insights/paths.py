@@ -27,7 +27,8 @@ def paths(seen: Seen) -> Iterator[Insight]:
     for name, traced in seen.motion.points.items():
         way = np.stack([traced.x, traced.y], axis=1)
         size = float(np.hypot(*np.ptp(way, axis=0)))
-        if size < 1e-2 * seen.size or traced.body in seen.guided:
+        is_held = any(traced.body in each.bodies for each in seen.motion.joints.values())
+        if not is_held or size < 1e-2 * seen.size or traced.body in seen.guided:
             continue
         rows = seen.window()
         if not seen.repeats and seen.motion.analysis == "simulation":

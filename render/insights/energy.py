@@ -16,10 +16,14 @@ from shared.contract import ContactMotion, ForceMotion
 
 LOST = 1e-3
 """Part of the energy that moves below which nothing is lost."""
+BACK = 2e-3
+"""Part of its range by which a place or a speed is away from where it began, if it is back."""
 SMALL = 0.02
 """Part of the largest loss below which another is not counted."""
 SOFT = 1e-5
 """Part of the energy that moves below which impacts are none."""
+ALWAYS = 0.98
+"""Part of the time from which on a contact always sticks."""
 LEAST_SWINGS = 3
 
 
@@ -30,8 +34,10 @@ def energy(seen: Seen) -> Iterator[Insight]:
         yield from swings(seen)
         yield from slides(seen)
         yield from orbits(seen)
+        yield from returns(seen)
         yield from isolation(seen)
     yield from impacts(seen)
+    yield from rhythm(seen)
     for name, contact in seen.motion.contacts.items():
         yield from sticking(seen, name, contact)
     yield from turns_of_cycle(seen)
@@ -235,6 +241,22 @@ def impacts(seen: Seen) -> Iterator[Insight]:
         )  # fmt: skip
 
 
+def rhythm(seen: Seen) -> Iterator[Insight]:
+    """Yield the contact that is hit evenly, most often of all."""
+    times: dict[str, list[float]] = {}
+    for event in seen.motion.events:
+        if event.what == "impact":
+            times.setdefault(event.name, []).append(event.time)
+    for name, hits in sorted(times.items(), key=lambda row: -len(row[1])):
+        gaps = np.diff(hits)
+        if len(gaps) > 1 and np.ptp(gaps) < 0.01 * gaps.mean():
+            yield insight(
+                "rhythm", gaps.mean(), "s", (hits[0], hits[1]), 0.6, joints=(name,), load=load(name),
+                period=amount(gaps.mean(), "s"),
+            )  # fmt: skip
+            return
+
+
 def _comes_back(seen: Seen) -> bool:
     """Return True if some contact throws back what meets it: then impacts take no energy."""
     shares = [rebound(seen, contact, event.time) for event in seen.motion.events if event.what == "impact"
@@ -259,8 +281,9 @@ def sticking(seen: Seen, name: str, contact: ContactMotion) -> Iterator[Insight]
         share = seen.share(mask)
         if share > 0.03:
             start, end = next(seen.stretches(mask))
+            template = f"{template}_always" if share > ALWAYS else template
             yield insight(
-                "sticking", share, "", (start, end), 0.4 + 0.3 * (state == "sticks" and share < 0.98), template,
+                "sticking", share, "", (start, end), 0.4 + 0.3 * (state == "sticks" and share < ALWAYS), template,
                 joints=(name,), bodies=tuple(each for each in contact.bodies if each != "ground"), load=load(name),
                 share=amount(share, "share"),
             )  # fmt: skip
@@ -296,6 +319,26 @@ def orbits(seen: Seen) -> Iterator[Insight]:
                 body=body(small), other=body(other), period=amount(gaps.mean(), "s"),
             )  # fmt: skip
         return
+
+
+def returns(seen: Seen) -> Iterator[Insight]:
+    """Yield when all bodies are where they began, and as fast, of a motion that is let go."""
+    if seen.motion.drivers:
+        return
+    centres = seen.centres.values()
+    away = np.zeros(len(seen.time))
+    for part in ("x", "y", "vx", "vy"):
+        rows = [getattr(centre, part) for centre in centres]
+        scale = max(float(np.ptp(row)) for row in rows)
+        away = np.maximum(away, np.max([np.abs(row - row[0]) for row in rows], axis=0) / (scale or 1.0))
+    out = np.flatnonzero(away > 0.2)
+    if not len(out):
+        return
+    near = np.flatnonzero((away < BACK) & (np.arange(len(away)) > out[0]))
+    if len(near):
+        at = float(seen.time[near[0]])
+        yield insight("returns", at - float(seen.time[0]), "s", (float(seen.time[0]), at), 0.6,
+                      bodies=tuple(seen.motion.bodies), period=amount(at - float(seen.time[0]), "s"))  # fmt: skip
 
 
 def isolation(seen: Seen) -> Iterator[Insight]:

@@ -34,7 +34,7 @@ def paths(seen: Seen) -> Iterator[Insight]:
         if not seen.repeats and seen.motion.analysis == "simulation":
             yield from reach(seen, name, way)
             continue
-        found = list(straight(seen, name, way[rows], size))
+        found = [] if traced.body in seen.pinned else list(straight(seen, name, way[rows], size))
         yield from found
         if any(each.template == "straight_exactly" for each in found):
             continue
@@ -81,6 +81,7 @@ def straight(seen: Seen, name: str, way: Array, size: float) -> Iterator[Insight
     if seen.input is not None and seen.input.turns:
         template = "straight_between"
         values |= {
+            "crank": body(seen.input.body),
             "begin": amount(seen.angle_at(start), "place"),
             "to": amount(seen.angle_at(end % _end(seen)), "place"),
         }

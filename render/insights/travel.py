@@ -72,7 +72,7 @@ def dwell(seen: Seen, output: Output) -> Iterator[Insight]:
 def rests(seen: Seen, size: Array, part: float) -> list[tuple[float, float]]:
     """Return start and end (s) of the times in which a rate (T,) is below a part of its largest, longest first.
 
-    Between the samples of rest and of motion the rate is taken to rise evenly, as it does beyond.
+    Between the samples of rest and of motion the beginning is found from the samples beyond.
     """
     mask, time = size <= part * size.max(), seen.time
     rows = []
@@ -84,12 +84,17 @@ def rests(seen: Seen, size: Array, part: float) -> list[tuple[float, float]]:
 
 
 def _edge(time: Array, size: Array, row: int, way: int) -> float:
-    """Return the time (s) from a row at rest to where a rate begins, one way; 0 at the ends of the motion."""
-    near, far = row + way, row + 2 * way
-    if not 0 <= min(near, far) <= max(near, far) < len(time) or size[far] <= size[near]:
+    """Return the time (s) from a row at rest to where a rate begins, one way; 0 at the ends of the motion.
+
+    The rate is taken to begin as a line or a parabola, whichever of them the next three samples are nearer to.
+    """
+    rows = row + way * np.arange(1, 4)
+    if rows.min() < 0 or rows.max() >= len(time) or np.any(np.diff(size[rows]) <= 0):
         return 0.0
-    step = abs(float(time[near] - time[row]))
-    return min(max(step - float(size[near] * abs(time[far] - time[near]) / (size[far] - size[near])), 0.0), step)
+    steps = np.abs(time[rows] - time[row])
+    lines = [size[rows] ** (1 / power) for power in (1, 2)]
+    w = min(lines, key=lambda line: abs(float(line[2] - 2 * line[1] + line[0])) / float(line[2]))
+    return min(max(float(steps[0] - w[0] * (steps[1] - steps[0]) / (w[1] - w[0])), 0.0), float(steps[0]))
 
 
 def _moved(seen: Seen, output: Output, start: float, end: float) -> float:
@@ -271,8 +276,10 @@ def level(seen: Seen) -> Iterator[Insight]:
         centre = seen.centres[name]
         travel = float(np.hypot(np.ptp(centre.x), np.ptp(centre.y)))
         if travel > 0.01 * seen.size:
+            upright = abs(math.remainder(float(seen.theta[name][0]), math.pi / 2)) < 1e-3
+            template = "level" if upright and any(seen.motion.gravity) else "keeps_direction"
             yield insight(
-                "level", travel, "m", (float(seen.time[0]), float(seen.time[-1])), 0.75, bodies=(name,),
+                "level", travel, "m", (float(seen.time[0]), float(seen.time[-1])), 0.75, template, bodies=(name,),
                 body=body(name), travel=amount(travel, "m"),
             )  # fmt: skip
 

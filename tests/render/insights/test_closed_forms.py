@@ -14,8 +14,11 @@ from scipy.special import ellipk
 from mbsd import Mechanism, constant_rate
 from mechanisms.cam_follower import mechanism as cam_follower
 from mechanisms.geneva_drive import mechanism as geneva_drive
+from mechanisms.quick_return import mechanism as quick_return
 from mechanisms.stages.solve.motion_file import to_motion
 from render.insights import Insight, insights
+from render.insights.meeting import PIN, happening, meets
+from render.magnitudes import length_scale
 from shared.contract import Motion
 
 
@@ -205,3 +208,23 @@ def test_a_toggle_goes_as_far_past_its_line_as_it_was_given() -> None:
     assert each.sentence() == (
         "The handle goes 3° past the line with the link: there the arm cannot push it back, so it locks."
     )
+
+
+def test_at_a_slot_as_much_happens_as_its_force_times_its_sliding() -> None:
+    """The pin slides in the arm at the rate of its distance from the pivot."""
+    m = quick_return.build(quick_return.Params())
+    for body in m.bodies.values():
+        body.mass = 0.1
+    motion = _solved(m)
+    joint, crank = motion.joints["slot"], 0.04 * np.exp(1j * np.asarray(motion.bodies["crank"].theta)) + 0.1j
+    sliding = np.abs(np.gradient(np.abs(crank), motion.time, edge_order=2))
+    turning = PIN * length_scale(motion) * np.abs(np.subtract(motion.bodies["crank"].omega, motion.bodies["arm"].omega))
+    wanted = np.hypot(joint.fx, joint.fy) * (sliding + turning)
+    assert happening(motion, "slot") == pytest.approx(wanted, abs=2e-3 * wanted.max())
+    assert [name for name, each in motion.joints.items() if meets(each)] == ["slot"]
+
+
+def test_a_geneva_pin_meets_its_wheel_while_that_turns() -> None:
+    motion = _gallery("geneva_drive", 0.0)
+    happens, omega = happening(motion, "index"), np.abs(motion.bodies["wheel"].omega)
+    assert omega[int(happens.argmax())] > 0.05 * omega.max()

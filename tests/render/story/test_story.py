@@ -11,11 +11,12 @@ from render.film.film import Film
 from render.film.framing import project
 from render.film.story.planned import planned, scenery_of
 from render.film.story.ramps import Ramp, into, warped
-from render.film.story.shots import reason
+from render.film.story.shots import close_ups, reason
 from render.film.story.story import Story, curves_of
 from render.frames.story import kinds
 from render.frames.story.telling import Telling, telling_of
 from render.insights import Insight
+from render.insights.meeting import happening
 from render.insights.seen import insight
 from render.insights.stops import stops
 from render.presets import PRESETS, preset_named
@@ -84,6 +85,19 @@ def test_time_stops_at_the_dead_point_and_says_so(out_root) -> None:
     at = (story.model_time(middle) - rocker_time(telling)) % period_of(telling)
     omega = np.interp(at + rocker_time(telling), telling.film.motion.time, rocker.omega)
     assert abs(omega) < 1e-3 * np.abs(rocker.omega).max()
+
+
+def test_the_close_up_has_its_event_after_three_fifths_of_its_move(out_root) -> None:
+    telling = tell()
+    placed = next(placed for placed in telling.story.placed if placed.shot.name == "macro")
+    motion = telling.film.motion
+    events = [motion.time[int(happening(motion, name).argmax())] for name in motion.joints]
+    seconds = np.linspace(0.0, placed.shot.seconds, 20001)
+    times = np.array([placed.shot.model(float(s)) for s in seconds])
+    move = seconds[int(np.argmax(times >= times[-1] - 1e-12))]
+    shown = placed.shot.model(close_ups.EVENT * float(move))
+    off = [abs((shown - at + period_of(telling) / 2) % period_of(telling) - period_of(telling) / 2) for at in events]
+    assert min(off) < 1e-4
 
 
 def test_sound_follows_the_times_of_the_story(out_root) -> None:

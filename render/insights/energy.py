@@ -16,6 +16,8 @@ from shared.contract import ContactMotion, ForceMotion
 
 LOST = 1e-3
 """Part of the energy that moves below which nothing is lost."""
+STANDS = 0.01
+"""Part of its largest kinetic energy with which a motion all but stands."""
 BACK = 2e-3
 """Part of its range by which a place or a speed is away from where it began, if it is back."""
 SMALL = 0.02
@@ -35,6 +37,7 @@ def energy(seen: Seen) -> Iterator[Insight]:
         yield from slides(seen)
         yield from orbits(seen)
         yield from returns(seen)
+        yield from climbs(seen)
         yield from isolation(seen)
     yield from impacts(seen)
     yield from rhythm(seen)
@@ -64,6 +67,7 @@ def losses(seen: Seen) -> Iterator[Insight]:
                 most=amount(float(np.ptp(kinetic)), "J"),
             )  # fmt: skip
         return
+    candidates = len(taken)
     taken = {name: lost for name, lost in taken.items() if lost > SMALL * max(taken.values())}
     total = sum(taken.values())
     name = max(taken, key=lambda each: taken[each])
@@ -79,7 +83,7 @@ def losses(seen: Seen) -> Iterator[Insight]:
         yield insight("losses", hits, "J", _whole(seen), 0.4 + 0.3 * of_all, "lost_in_impacts",
                       count=amount(count, "count"), **values)  # fmt: skip
         return
-    template = "lost_alone" if len(taken) == 1 else "lost_mostly"
+    template = "lost_mostly" if len(taken) > 1 else "lost_alone" if candidates == 1 else "lost_nearly"
     yield insight(
         "losses", taken[name], "J", _whole(seen), 0.4 + 0.3 * min(of_all, 1), template, joints=(name,),
         load=load(name), **values,
@@ -339,6 +343,29 @@ def returns(seen: Seen) -> Iterator[Insight]:
         at = float(seen.time[near[0]])
         yield insight("returns", at - float(seen.time[0]), "s", (float(seen.time[0]), at), 0.6,
                       bodies=tuple(seen.motion.bodies), period=amount(at - float(seen.time[0]), "s"))  # fmt: skip
+
+
+def climbs(seen: Seen) -> Iterator[Insight]:
+    """Yield how much of its height a motion under weight alone gets back when it first stands still again."""
+    energy_of, events = seen.motion.energy, seen.motion.events
+    if seen.motion.drivers or any(np.any(each.potential) for each in seen.motion.forces.values()):
+        return
+    kinetic, height = np.asarray(energy_of.kinetic), np.asarray(energy_of.potential)
+    top = float(kinetic.max())
+    if top <= 0 or kinetic[0] > 1e-6 * top or any(event.energy < -LOST * top for event in events):
+        return
+    moving = np.flatnonzero(kinetic > 0.2 * top)
+    again = np.flatnonzero((kinetic < STANDS * top) & (np.arange(len(kinetic)) > moving[0]))
+    if not len(again):
+        return
+    first = again[: int(np.argmax(np.append(np.diff(again) > 1, True))) + 1]
+    k = int(first[kinetic[first].argmin()])
+    share = (float(height[k]) - float(height[:k].min())) / (float(height[0]) - float(height[:k].min()))
+    template = "climbs_back" if share > 1 - STANDS else "climbs"
+    yield insight(
+        "climbs", share, "", seen.at(k), 0.5 if share > 1 - STANDS else 0.9, template,
+        bodies=tuple(seen.motion.bodies), share=amount(share, "share"), at=amount(seen.time[k], "s"),
+    )  # fmt: skip
 
 
 def isolation(seen: Seen) -> Iterator[Insight]:

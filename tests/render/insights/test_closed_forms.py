@@ -228,3 +228,13 @@ def test_a_geneva_pin_meets_its_wheel_while_that_turns() -> None:
     motion = _gallery("geneva_drive", 0.0)
     happens, omega = happening(motion, "index"), np.abs(motion.bodies["wheel"].omega)
     assert omega[int(happens.argmax())] > 0.05 * omega.max()
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.01])
+def test_a_pendulum_stands_again_at_the_height_that_its_angle_says(damping: float) -> None:
+    motion = _gallery("pendulum", 4.0, damping=damping)
+    each = first(motion, "climbs")
+    theta = np.asarray(motion.bodies["rod"].theta)
+    k = int(np.argmin(np.abs(np.asarray(motion.time) - each.start)))
+    assert each.number == pytest.approx((1 + math.sin(theta[k])) / (1 + math.sin(theta[0])), abs=1e-3)
+    assert (each.number > 0.99) == (damping == 0.0)

@@ -60,9 +60,7 @@ def macro(scenery: Scenery) -> Shot | None:
 
     def over(s: float) -> Over:
         shown = shown_in(s, 0.5, SECONDS - 0.2)
-        return scenery.going(
-            ramp.time_at(s), ramp.rate(s) if s < move else 0.0, strip=False, caption=text, caption_shown=shown
-        )
+        return scenery.going(ramp.time_at(s), ramp.shown_rate(s), strip=False, caption=text, caption_shown=shown)
 
     captions = (Caption(0.5, SECONDS - 0.2, text),)
     return Shot("macro", scenery.say("macro"), SECONDS, picture, over, ramp.time_at, captions)
@@ -186,7 +184,7 @@ def section(scenery: Scenery) -> Shot | None:
     text = scenery.say("cut_open")
 
     def over(s: float) -> Over:
-        rate, shown = ramp.rate(s) if s < move else 0.0, shown_in(s, 0.4, SECTION_SECONDS - 0.2)
+        rate, shown = ramp.shown_rate(s), shown_in(s, 0.4, SECTION_SECONDS - 0.2)
         return scenery.going(ramp.time_at(s), rate, strip=False, caption=text, caption_shown=shown)
 
     captions = (Caption(0.4, SECTION_SECONDS - 0.2, text),)

@@ -15,15 +15,15 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from render.insights.energy import energy
 from render.insights.insight import Insight, Named, said, sentences, stem_of
-from render.insights.loads import loads
-from render.insights.passing import passing
-from render.insights.paths import paths
-from render.insights.ratios import ratios
+from render.insights.kinds.energy import energy
+from render.insights.kinds.loads import loads
+from render.insights.kinds.passing import passing
+from render.insights.kinds.paths import paths
+from render.insights.kinds.ratios import ratios
+from render.insights.kinds.shaking import balance
+from render.insights.kinds.travel import travel
 from render.insights.seen import Seen
-from render.insights.shaking import balance
-from render.insights.travel import travel
 from shared.contract import Motion
 
 WEIGHTS = {

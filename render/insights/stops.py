@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from render.insights.insight import Insight
-from render.insights.loads import LEVEL, first_peak
+from render.insights.kinds.loads import LEVEL, first_peak
 from render.insights.ranking import insights
 from render.insights.seen import Array, Seen, amount, insight, joint, load, point
 from render.insights.seen import body as body_named

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from render.insights.insight import Insight
-from render.insights.ratios import held_ratio
+from render.insights.kinds.ratios import held_ratio
 from render.insights.seen import TURN, Array, Output, Seen, amount, body, insight, load
 from shared.contract import ContactMotion, ForceMotion
 

@@ -20,7 +20,6 @@ from studio.night import runs
 from tests.studio.night.torture.stage import RENDERED
 from tests.studio.night.torture.workers import Workers
 
-
 SHOTS = {
     "four_bar": Shot(turns=2, seconds_per_turn=0.2),
     "pendulum": Shot(turns=1, seconds_per_turn=0.14, camera=Camera(azimuth=30.0)),

@@ -54,7 +54,7 @@ PARTS = {
     "synthesis": synthesis,
     "tolerances": tolerances,
 }
-"""What is measured alone, by its word."""
+"""Benchmarks that run alone, by their word."""
 OTHERS = ("cluster", "film", "live", "start", "table", "tune [names]")
 
 

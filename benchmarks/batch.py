@@ -8,7 +8,9 @@ import time
 import numpy as np
 
 import mbsd
+from benchmarks.harness import best_in_turns
 from benchmarks.rows import Bar, Row
+from tools.models import linkages
 
 PROBLEM = "25 000 four-bar designs x 360 angles"
 DESIGNS, STEPS = 25_000, 360
@@ -42,16 +44,7 @@ def closed_form(lengths: np.ndarray) -> np.ndarray:
 
 def model() -> mbsd.Mechanism:
     """The linkage that the designs vary."""
-    m = mbsd.Mechanism("designs")
-    crank, coupler, rocker = m.bar("crank", CRANK), m.bar("coupler", 3.5), m.bar("rocker", 3.0)
-    m.revolute("A", m.ground.at(0, 0), crank.start)
-    m.revolute("B", crank.end, coupler.start)
-    m.revolute("C", coupler.end, rocker.end)
-    m.revolute("D", m.ground.at(GROUND, 0), rocker.start)
-    m.drive_angle("motor", crank, mbsd.constant_rate(2 * np.pi))
-    m.trace("P", coupler.at(*POINT))
-    m.start_near(crank=0, coupler=60, rocker=100)
-    return m
+    return linkages.four_bar(GROUND, CRANK, 3.5, 3.0, (60, 100), traced=POINT)
 
 
 def measured() -> tuple[list[Row], list[Bar]]:
@@ -59,16 +52,8 @@ def measured() -> tuple[list[Row], list[Bar]]:
     lengths, linkage = designs(), model()
     changes = {"coupler": lengths[:, 0], "rocker": lengths[:, 1]}
     last = 1.0 - 1.0 / STEPS
-    ours = theirs = float("inf")
-    exact = closed_form(lengths)
-    result = linkage.batch(lengths=changes, duration=last, steps=STEPS - 1)
-    for _ in range(ROUNDS):
-        started = time.perf_counter()
-        result = linkage.batch(lengths=changes, duration=last, steps=STEPS - 1)
-        ours = min(ours, time.perf_counter() - started)
-        started = time.perf_counter()
-        exact = closed_form(lengths)
-        theirs = min(theirs, time.perf_counter() - started)
+    calls = lambda: linkage.batch(lengths=changes, duration=last, steps=STEPS - 1), lambda: closed_form(lengths)
+    (ours, result), (theirs, exact) = best_in_turns(calls, ROUNDS, time.perf_counter)
     error = float(np.abs(result.points["P"] - exact).max())
     assert result.closes.all()
     assert len(ANGLES) == exact.shape[1]

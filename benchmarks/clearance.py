@@ -6,12 +6,12 @@ impact makes a difference several times larger, and two turns have some sixty.
 
 from __future__ import annotations
 
-import math
 import time
 
 import numpy as np
 
 import mbsd
+from benchmarks.harness import best_in_turns
 from benchmarks.rows import Bar, Row
 from mbsd import Mechanism
 from shared.stage.console import say
@@ -21,7 +21,7 @@ ROUNDS = 9
 MOST = 50.0
 """How many times the ideal slider-crank's time one with a clearance joint takes at most."""
 TOLERANCE = 1e-7
-"""What simulate() takes where nothing is said."""
+"""The default tolerance of simulate()."""
 SLIP = (0.01, 0.1)
 CASES = {"ideal": (None, 0.0), "0.05 mm": (0.05e-3, 0.0), "0.5 mm": (0.5e-3, 0.0), "0.5 mm, friction": (0.5e-3, 0.1)}
 
@@ -29,14 +29,9 @@ CASES = {"ideal": (None, 0.0), "0.05 mm": (0.05e-3, 0.0), "0.5 mm": (0.5e-3, 0.0
 def measured() -> tuple[list[Row], list[Bar]]:
     """Rows of all cases, and a bar for each with play."""
     machines = {name: _machine(*case) for name, case in CASES.items()}
-    best = dict.fromkeys(machines, math.inf)
-    for m in machines.values():
-        m.simulate(2.0 * TURN)
-    for _ in range(ROUNDS):
-        for name, m in machines.items():
-            begun = time.perf_counter()
-            m.simulate(2.0 * TURN)
-            best[name] = min(best[name], time.perf_counter() - begun)
+    calls = [lambda m=m: m.simulate(2.0 * TURN) for m in machines.values()]
+    timed = best_in_turns(calls, ROUNDS, time.perf_counter)
+    best = dict(zip(machines, (seconds for seconds, _ in timed), strict=True))
     rows, bars = [], []
     for name, m in machines.items():
         problem = f"slider-crank at 5000 rpm, two turns, {name}"

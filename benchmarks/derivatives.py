@@ -9,12 +9,12 @@ of whole motions.
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 
 import numpy as np
 
 import mbsd
+from benchmarks.harness import best_in_turns
 from benchmarks.rows import Bar, Row
 from mbsd.measures import Measure, final, integral, largest
 from mbsd.numbers.names import number_named, with_values
@@ -110,7 +110,7 @@ def measured() -> tuple[list[Row], list[Bar]]:
         ) -> np.ndarray:
             return m.sensitivities({"of": measure}, numbers, duration, STEPS)["of"]
 
-        own, alone = _least_in_turns(gradient, motion)
+        (own, _), (alone, _) = best_in_turns([gradient, motion], TURNS)
         wrong = error(m, numbers, duration, measure, gradient())
         rows.append(Row(problem, "mbsd", mbsd.__version__, f"m.sensitivities(){TIME}", own, wrong))
         rows.append(Row(problem, f"its m.{word}()", mbsd.__version__, f"one motion{TIME}", alone, 0.0))
@@ -138,15 +138,3 @@ def error(
         scale = max(abs(total), 1e-3)
         worst = max(worst, abs(gradient[k] - total) / scale)
     return worst
-
-
-def _least_in_turns(*calls: Callable[[], object]) -> list[float]:
-    """s, the least of several of each; none finds the processor's caches as it left them itself."""
-    best = [math.inf] * len(calls)
-    for turn in range(TURNS + 1):
-        for k, call in enumerate(calls):
-            begun = time.process_time()
-            call()
-            if turn:
-                best[k] = min(best[k], time.process_time() - begun)
-    return best

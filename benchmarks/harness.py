@@ -8,7 +8,7 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from benchmarks.rows import Row
@@ -54,6 +54,22 @@ def best_of(fresh: Callable[[], Callable[[], Any]], runs: int, longest: float = 
         if time.perf_counter() - begun > longest:
             break
     return best, result
+
+
+def best_in_turns(
+    calls: Sequence[Callable[[], Any]], turns: int, clock: Callable[[], float] = time.process_time
+) -> list[tuple[float, Any]]:
+    """Return seconds of the quickest run of each call and what its last run gave; a first run of each is not timed.
+
+    In turns no call finds the caches of the processor as it left them itself.
+    """
+    best, last = [math.inf] * len(calls), [call() for call in calls]
+    for _ in range(turns):
+        for k, call in enumerate(calls):
+            started = clock()
+            last[k] = call()
+            best[k] = min(best[k], clock() - started)
+    return list(zip(best, last, strict=True))
 
 
 def keep_quicker(best: dict[Any, Row], key: Any, row: Row) -> None:

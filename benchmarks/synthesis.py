@@ -7,7 +7,6 @@ path, taken from a sweep by mbsd of each code's design; times are of the process
 from __future__ import annotations
 
 import math
-import time
 import warnings
 from collections.abc import Sequence
 from importlib import metadata
@@ -16,6 +15,7 @@ from typing import Any
 import numpy as np
 
 import mbsd
+from benchmarks.harness import best_in_turns
 from benchmarks.rows import Bar, Row
 from mbsd.synthesis.target import feet, places_at
 
@@ -100,21 +100,9 @@ def as_mechanism(design: Any) -> mbsd.Mechanism:
     return m
 
 
-def _timed(run: Any) -> tuple[float, Any]:
-    """The best processor time of some runs (s), and what the last one found."""
-    run()
-    best, last = math.inf, None
-    for _ in range(ROUNDS):
-        began = time.process_time()
-        last = run()
-        best = min(best, time.process_time() - began)
-    return best, last
-
-
 def measured() -> tuple[list[Row], list[Bar]]:
     """Both rows, and the bar."""
-    ours, mechanism = _timed(_ours)
-    theirs, designs = _timed(_theirs)
+    (ours, mechanism), (theirs, designs) = best_in_turns([_ours, _theirs], ROUNDS)
     errors = [error(as_mechanism(design)) for design in designs]
     rows = [
         Row(PROBLEM, "mbsd", mbsd.__version__, f"fit_path, one start, nine numbers free{TIME}", ours, error(mechanism)),

@@ -6,16 +6,16 @@ Processor time, which other work on the machine disturbs less. The loop takes a 
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Callable
 
 import numpy as np
 import scipy
 from scipy.optimize import fsolve
 
 import mbsd
+from benchmarks.harness import best_in_turns
 from benchmarks.rows import Bar, Row
 from mbsd.measures import largest
+from tools.models import linkages
 
 COUNT, STEPS, LOOPED = 100_000, 120, 20
 GROUND = 0.120
@@ -32,15 +32,7 @@ ROUNDS = 3
 
 def model() -> mbsd.Mechanism:
     """The four-bar as it is drawn."""
-    m = mbsd.Mechanism("four_bar")
-    crank, coupler, rocker = (m.bar(name, length) for name, length in LENGTHS.items())
-    m.revolute("A", m.ground.at(0, 0), crank.start)
-    m.revolute("B", crank.end, coupler.start)
-    m.revolute("C", coupler.end, rocker.end)
-    m.revolute("D", m.ground.at(GROUND, 0), rocker.start)
-    m.drive_angle("motor", crank, mbsd.constant_rate(math.tau))
-    m.start_near(crank=0, coupler=45, rocker=100)
-    return m
+    return linkages.four_bar(GROUND, *LENGTHS.values())
 
 
 def closed_form(lengths: np.ndarray) -> np.ndarray:
@@ -84,11 +76,10 @@ def _ours() -> mbsd.Tolerances:
 
 def measured() -> tuple[list[Row], list[Bar]]:
     """All rows, and the bar."""
-    _ours()
-    ours, t = _timed(_ours)
+    [(ours, t)] = best_in_turns([_ours], ROUNDS)
     lengths = np.array(list(LENGTHS.values())) + t.deviations
-    numpy_time, exact = _timed(lambda: closed_form(lengths))
-    loop_time, sample = _timed(lambda: looped(lengths[:LOOPED]))
+    peers = lambda: closed_form(lengths), lambda: looped(lengths[:LOOPED])
+    (numpy_time, exact), (loop_time, sample) = best_in_turns(peers, ROUNDS)
     scaled = loop_time * COUNT / LOOPED
     rows = [
         Row(PROBLEM, "mbsd", mbsd.__version__, f"tolerances, {_rate(ours)}; {TIME}", ours, _error(t.values, exact)),
@@ -107,14 +98,3 @@ def _rate(seconds: float) -> str:
 
 def _error(values: np.ndarray, exact: np.ndarray) -> float:
     return float(np.abs(values - exact).max())
-
-
-def _timed[T](run: Callable[[], T]) -> tuple[float, T]:
-    """The least processor time (s) of some runs, and what the last gave."""
-    best, last = math.inf, None
-    for _ in range(ROUNDS):
-        began = time.process_time()
-        last = run()
-        best = min(best, time.process_time() - began)
-    assert last is not None
-    return best, last

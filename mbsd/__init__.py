@@ -176,7 +176,7 @@ _ROOMS = {
 }
 """Public names of each module."""
 _LATER = {name: module for module, names in _ROOMS.items() for name in names.split()}
-"""Where each name is; it is loaded when it is asked for, so that the stages can look at what changed without numpy."""
+"""Home of each name, loaded on request, so that the stages can look at what changed without numpy."""
 
 
 def __getattr__(name: str) -> Any:

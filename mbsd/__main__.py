@@ -124,7 +124,7 @@ PARTS: dict[str, Callable[[], None]] = {
     "closed": _closed,
     "surfaces": _surfaces,
 }
-"""By name, those that take longest first, but that the first two, which begin together, share little."""
+"""Kernels by name, longest first; but the first two, which begin together, share little."""
 
 
 def main() -> int:

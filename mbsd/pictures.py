@@ -98,7 +98,7 @@ class Animation(Suggesting):
     pictures: int
     """Drawn; an MP4 repeats those of a short round."""
     seconds: float
-    """On the screen, once through."""
+    """Seconds on the screen, once through."""
     rate: float
     """Seconds of the motion in a second on the screen."""
 

@@ -1,4 +1,4 @@
-"""Is a file that is to be shown of the machine as it is now? Asked of the author's files and of the stages' records.
+"""Check that a file shows the mechanism as it is now, by the author's files and the stages' records.
 
 ``python -m mechanisms current`` tells whose motion, parts and shot follow from the author's files as they are; the
 stamps of the stages tell what other results were made of (shared/stage/stages.py).
@@ -36,7 +36,7 @@ class Freshness:
         return name in self._current
 
     def why_older(self, out: Out, path: Path) -> str:
-        """Return why a file does not show the machine as it is now, as part of a sentence; empty where it does."""
+        """Return why a file is out of date, as part of a sentence; empty if it is not."""
         if not path.is_file():
             return "it is not there"
         if not is_recorded(out, path):
@@ -50,9 +50,10 @@ class Freshness:
 
 
 def current_names(names: Sequence[str]) -> set[str]:
-    """Return the mechanisms whose results follow from their files; none, with a warning, if that takes long.
+    """Return the mechanisms whose results follow from their files.
 
-    Asked in a process of its own, for mechanism.py may do anything there.
+    There are none, with a warning, if that takes long. Asked in a process of its own, for mechanism.py may do anything
+    there.
     """
     if not names:
         return set()
@@ -73,12 +74,14 @@ def current_names(names: Sequence[str]) -> set[str]:
 
 
 def clearance_files(out: Out) -> list[Path]:
-    """Return clearance.json of a machine, if it is there and of the motion and the parts beside it; else nothing."""
+    """Return clearance.json if it is of the motion and the parts beside it; else nothing."""
     return [out.clearance] if out.clearance.is_file() and not outdated_by(out, out.clearance) else []
 
 
 def current_clearance(out: Out, parts: Parts | None, stage: str) -> Clearance | None:
-    """Return the clearance of a machine with parts, unless motion or parts have changed since, which ``stage`` reports.
+    """Return the clearance of a machine with parts, unless motion or parts have changed since.
+
+    ``stage`` then reports the change.
 
     Raises UserError for a file that cannot be read.
     """

@@ -87,9 +87,7 @@ def strip(posters: Sequence[bytes]) -> bytes:
 
 
 def unlike(looks: Sequence[np.ndarray]) -> list[int]:
-    """Return numbers of ON_STRIP pictures in their order: each next one is the one least like all that are taken
-    already.
-    """
+    """Return numbers of ON_STRIP pictures, each next one least like all that are chosen already."""
     flat = np.stack([look.ravel() for look in looks])
     if len(flat) <= ON_STRIP:
         return list(range(len(flat)))
@@ -154,10 +152,10 @@ STRIP = "strip.jpg"
 
 
 def run(folder: Path = FOLDER) -> int:
-    """Write README.md, a poster of each mechanism and some of them in one; posters of mechanisms that are gone go.
+    """Write README.md, a poster of each mechanism and some of them in one picture.
 
-    Returns 1 if a mechanism is left out, because it has no poster, or one of an older version. Raises UserError if none
-    has one.
+    Posters of mechanisms that are gone are deleted. Returns 1 if a mechanism is left out, because it has no poster, or
+    one of an older version. Raises UserError if none has one.
     """
     entries, posters = [], {}
     names = mechanism_names()

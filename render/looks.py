@@ -1,4 +1,4 @@
-"""Looks as data: light, ground, background and exposure of a picture; Blender and the page translate them."""
+"""Looks as data: light, ground, background and exposure of a picture, for Blender and the page."""
 
 from __future__ import annotations
 
@@ -36,7 +36,10 @@ class Softbox(msgspec.Struct, kw_only=True, frozen=True):
 
 
 class Sun(msgspec.Struct, kw_only=True, frozen=True):
-    """Parallel light from the direction of ``place``: W/m^2; ``angle`` is the disc's, in degrees: soft shadows."""
+    """Parallel light from the direction of ``place``, in W/m^2.
+
+    ``angle`` is the disc's, in degrees, and makes shadows soft.
+    """
 
     place: Place
     power: float
@@ -52,7 +55,7 @@ class Light(msgspec.Struct, kw_only=True, frozen=True):
     softboxes: tuple[Softbox, ...] = ()
     sun: Sun | None = None
     shadow: Place = (-0.9, 1.5, 4.2)
-    """Where the page's one lamp with a shadow shines from, where there is no sun."""
+    """Place of the page's one lamp with a shadow, where there is no sun."""
     bounce: float = 0.0
     """Irradiance of ground and wall over pi: light that bounces meets them as lamps of their mean colour times this and
     goes no further; 0: they are lit for it, too."""
@@ -83,7 +86,7 @@ class Wall(msgspec.Struct, kw_only=True, frozen=True):
     kind: Literal["sweep", "pegboard"]
     colour: Colour
     away: float
-    """From the middle, or from what reaches farther."""
+    """Distance from the middle, or from what reaches farther."""
 
 
 class Drawing(msgspec.Struct, kw_only=True, frozen=True):
@@ -93,7 +96,7 @@ class Drawing(msgspec.Struct, kw_only=True, frozen=True):
     grid: Colour
     line: Colour
     tone: float
-    """How far faces are lighter than the paper where they face the light."""
+    """Part by which faces are lighter than the paper where they face the light."""
 
 
 class Screen(msgspec.Struct, kw_only=True, frozen=True):
@@ -117,9 +120,9 @@ class Look(msgspec.Struct, kw_only=True, frozen=True):
     ground: Ground
     sky: Sky
     lying: Light = Light()
-    """On a machine that lies, which is seen from above."""
+    """Lights of a machine that lies, which is seen from above."""
     standing: Light = Light()
-    """On a machine that stands, whose plates face the camera."""
+    """Lights of a machine that stands, whose plates face the camera."""
     wall: Wall | None = None
     """Null is open ground up to the horizon, in haze."""
     vice: bool = False
@@ -308,7 +311,7 @@ KEY = Softbox(name="key", place=(-2.3, -2.6, 2.9), size=(1.5, 1.5), power=300.0,
 FACE = Softbox(
     name="face", place=(2.7, -2.7, 0.5), size=(1.2, 2.2), power=42.0, colour=(1.0, 0.985, 0.96), aim=(0.0, 0.0, 0.1)
 )
-"""Where plates that face the camera mirror it, from a camera that stands to the left of them."""
+"""Place that plates which face the camera mirror, from a camera that stands to the left of them."""
 GLOW = Softbox(
     name="glow",
     place=(0.5, 2.6, 2.6),
@@ -347,7 +350,7 @@ LARGE = 0.8
 
 @dataclass(frozen=True)
 class Family:
-    """Facts that decide the look: how a machine stands, if gas or a motor moves it, the diagonal of its sweep (m)."""
+    """Facts that decide the look: stand, gas or motor drive, the diagonal of its sweep (m)."""
 
     mount: Kind
     engine: bool
@@ -362,9 +365,10 @@ class Family:
 
 
 def chosen(family: Family) -> str:
-    """Return the look that suits: vehicles are on a road, engines in the dark studio, what is left to itself before
-    white; what is driven stands on a bench, or in daylight where it is too large for one or hangs at a wall, and in the
-    studio where it lies.
+    """Return the look that suits a family.
+
+    Vehicles are on a road, engines in the dark studio, what is left to itself before white; what is driven stands on a
+    bench, or in daylight where it is too large for one or hangs at a wall, and in the studio where it lies.
     """
     if family.mount == "ground":
         return "road"

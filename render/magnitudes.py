@@ -32,9 +32,7 @@ class Crank:
 
 
 def crank_of(motion: Motion) -> Crank | None:
-    """Return the crank; of several the one that a driver turns, else the first in the file. None where nothing turns
-    so.
-    """
+    """Return the crank: the one that a driver turns, else the first in the file; None without any."""
     cranks = [crank for body, at in _on_ground(motion).items() if (crank := _crank(motion, body, at)) is not None]
     driven = driven_bodies(motion)
     return min(cranks, key=lambda crank: crank.body not in driven, default=None)
@@ -152,7 +150,7 @@ def energy_floor(motion: Motion) -> float:
 
 
 def power_floor(motion: Motion) -> float:
-    """Return the rounding in a power (W), beside those of drivers, weights, inertia forces and turning itself."""
+    """Return the rounding in a power (W), beside those of drivers, weights, inertia forces and turning."""
     gravity = float(np.hypot(*motion.gravity))
     largest = [max(motion.energy.kinetic) * speed_scale(motion)]
     largest += [float(np.abs(driver.power).max()) for driver in motion.drivers.values()]
@@ -164,7 +162,7 @@ def power_floor(motion: Motion) -> float:
 
 
 def floors(motion: Motion) -> dict[str, float]:
-    """Return what is rounding in the numbers of a motion, by their SI unit; units without a scale are left out."""
+    """Return the rounding in a motion's numbers, by SI unit; units without a scale are left out."""
     centres = [centre_of_mass(body) for body in motion.bodies.values()]
     ends = [float(np.hypot(np.ptp(at.x), np.ptp(at.y))) for at in centres]
     fastest = max((float(np.hypot(at.vx, at.vy).max()) for at in centres), default=0.0)

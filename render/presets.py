@@ -119,8 +119,9 @@ MEANT = {
 
 
 def show_words(text: str) -> str:
-    """Return the words of SHOW in their order, each once, commas between them; raises UserError for one that is
-    none.
+    """Return the words of SHOW in their order, each once, with commas.
+
+    Raises UserError for an unknown word.
     """
     asked = [word.strip() for word in text.split(",") if word.strip()]
     for word in asked:
@@ -141,7 +142,10 @@ def _meant(word: str) -> str:
 
 
 def has_sound(text: str) -> bool:
-    """Return True if SOUND asks for a film with sound, as an empty one does; raises UserError for another word."""
+    """Return True if SOUND asks for a film with sound, as an empty one does.
+
+    Raises UserError for another word.
+    """
     if text not in ("", "on", "off"):
         raise UserError(f"SOUND={text!r} is neither on nor off; without SOUND a film has its sound")
     return text != "off"

@@ -1,4 +1,4 @@
-"""``make check``: versions, packages against the lock, system libraries and disk space of this machine."""
+"""``make check``: versions, packages against the lock, libraries and disk space of this computer."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ BESIDE = b"""#!/bin/sh
 '''exec' "$(dirname -- "$(realpath -- "$0")")"/'python' "$0" "$@"
 ' '''
 """
-"""What uv writes."""
+"""Lines that uv writes."""
 
 
 def main() -> int:

@@ -1,4 +1,7 @@
-"""Rows of the calls: every code in a process of its own on one core, in turns, the best of all calls counts."""
+"""Rows of the calls: every code in a process of its own on one core, in turns.
+
+The best of all calls counts.
+"""
 
 from __future__ import annotations
 

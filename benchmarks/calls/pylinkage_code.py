@@ -1,4 +1,4 @@
-"""pylinkage: its compiled dyad solver with positions, velocities and accelerations of the joints; no forces."""
+"""pylinkage: its compiled dyad solver with positions, velocities and accelerations; no forces."""
 
 from __future__ import annotations
 

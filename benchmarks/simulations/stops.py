@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from typing import Any
 
@@ -11,6 +10,7 @@ import numpy as np
 import mbsd
 from benchmarks.rows import Bar, Row
 from mbsd.measures import final, largest, smallest
+from tools.models.stops import barrier
 
 PROBLEM = "many four-bars between stops, 2 s each"
 DURATION = 2.0
@@ -22,17 +22,7 @@ MOST = 3.0
 
 def build(damping: float) -> mbsd.Mechanism:
     """One of them."""
-    m = mbsd.Mechanism("barrier")
-    a, b, c = m.bar("crank", 0.1, mass=0.3), m.bar("coupler", 0.38, mass=0.5), m.bar("rocker", 0.3, mass=2.0)
-    m.revolute("A", m.ground.at(0, 0), a.start)
-    m.revolute("B", a.end, b.start)
-    m.revolute("C", b.end, c.end)
-    pivot = m.revolute("D", m.ground.at(0.4, 0.02), c.start)
-    m.motor("motor", m.ground, a, mbsd.curve([-10, 0, 20, 40], [6.0, 5.0, 2.0, 0.0]))
-    m.torsion_spring("spring", m.ground, c, 3.0, damping, free_angle=1.8)
-    m.stop("end", pivot, lower=math.radians(85), upper=math.radians(125), restitution=0.3)
-    m.start_near(crank=0, coupler=45, rocker=90)
-    return m
+    return barrier(True, damping)
 
 
 def study(values: np.ndarray, outputs: int) -> np.ndarray:

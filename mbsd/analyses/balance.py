@@ -29,7 +29,7 @@ BALANCED = 1e-13
 NOISE = 1e-14
 """Fraction of the stiffness: what a displacement by rounding changes in the loads."""
 ACCEPTED = 1e-9
-"""What counts as balanced where rounding allows no further step."""
+"""Residual that counts as balanced where rounding allows no further step."""
 AWAY, TURNED = 20.0, 25.0
 """Sizes, and rad, from its start beyond which a mechanism runs away."""
 GROWN = 1e3
@@ -63,8 +63,8 @@ def look(ready: Statics, q: np.ndarray) -> Balance:
     ready.packed.specials.check()
     if not np.isfinite(load).all():
         raise EquilibriumError(
-            f"{ready.packed.name}: the load of '{_worst(ready, np.isnan(load))}' is not finite at the pose that the "
-            "search has come to; start nearer with start_near, or look at the forces of this body"
+            f"{ready.packed.name}: the load of '{_worst(ready, np.isnan(load))}' is not finite at the last pose of "
+            "the search. Start nearer with start_near, or check the forces on this body"
         )
     slope = -(basis * ready.packed.column_scale()[:, None]).T @ load
     return Balance(basis, load, ready.multipliers(jacobian, load), slope, ready.size_of_load(q))

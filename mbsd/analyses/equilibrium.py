@@ -134,9 +134,9 @@ def _result(m: Model, resting: Model, ready: Statics, q: np.ndarray, steps: int)
     drivers = len(packed.ws.phi) - packed.driver_rows
     if here.basis.shape[1] > max(mobility.dof - drivers, 0):
         raise SingularPoseError(
-            f"{packed.name}: the pose that balances is singular (a toggle or change point): the links can go on in "
-            f"more ways than the {max(mobility.dof - drivers, 0)} of their mobility, and it is unknown whether it "
-            "is stable. Change a length a little, or start so that another equilibrium is nearer."
+            f"{packed.name}: the pose that balances is singular (a toggle or change point). The links can go on in "
+            f"more ways than the {max(mobility.dof - drivers, 0)} of their mobility, so its stability is "
+            "unknown. Change a length a little, or start so that another equilibrium is nearer."
         )
     stiffness = ready.stiffness(q, here.lam, here.basis, pose_step(packed, q, STEP))
     independent = independent_coordinates(packed, here.basis)

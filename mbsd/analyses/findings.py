@@ -87,8 +87,8 @@ LINKS = 4
 PIN, SLIDE = "pin", "guide"
 """Pairs of :class:`mbsd.model.joint.JointKind` that a chain may have."""
 CHANGE_POINT_REMEDY = (
-    "Sweeps and simulations pass such a pose on the smooth continuation, and reactions may grow without bound there: "
-    "choose the other way with sweep(switch_at=...), or change a length, or add a link that decides"
+    "Sweeps and simulations pass such a pose on the smooth continuation, and reactions may grow without bound there. "
+    "Choose the other way with sweep(switch_at=...), or change a length, or add a link that decides"
 )
 
 

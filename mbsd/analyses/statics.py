@@ -36,7 +36,7 @@ from mbsd.results.measured import gaps_of
 RANK = 1e-8
 """Smallest singular value of the scaled Jacobian, relative to the largest, that counts."""
 PREFERENCE = {"angle": 4.0, "earlier": 1.02}
-"""How much an angle is preferred to a place, and a body to the next one."""
+"""Preference of an angle over a position, and of a body over the next one."""
 COORDINATES = ("x", "y", "theta")
 
 

@@ -80,8 +80,8 @@ def check_pistons(packed: Packed, t: np.ndarray, q: np.ndarray, tell: bool = Tru
         if not height[k] > 0.0:
             raise ModelError(
                 f"{packed.name}: force '{placed.name}': at t = {t[k]:.6g} s the piston lies {height[k] - shift:.6g} m "
-                f"along its cylinder, where its gas has no room left: the volume would be "
-                f"{placed.chamber.area * height[k]:.3g} m^3. Move the markers apart, or give it more clearance"
+                f"along its cylinder and leaves its gas no room: the volume would be "
+                f"{placed.chamber.area * height[k]:.3g} m^3. Move the markers apart, or increase its clearance"
             )
         if not tell or cycle is None or cycle.height is None or not cycle.burns:
             continue

@@ -22,7 +22,7 @@ REMEDY = (
     "Lower the friction or the radius of the pins, guide sliders over a longer length, or keep links from lying nearly "
     "in one line"
 )
-"""What helps where joints jam."""
+"""Remedy for joints that jam."""
 
 
 def friction_along(

@@ -73,7 +73,7 @@ _NONE = pack_laws(())
 LAW_STEP = 1e-6
 """Part of its size by which a law's pieces disagree where it jumps."""
 BESIDE = 1e-12
-"""How far (of the span) a driven motion is evaluated from a jump, so that its author's functions are clear of it."""
+"""Distance (of the span) from a jump at which a driven motion is evaluated, clear of its author's functions."""
 
 
 def disagreeing(own: np.ndarray, order: int, part: float, over: float = 0.0) -> list[float]:
@@ -157,7 +157,7 @@ def refuse_bad_laws(packed: Packed, start: float, end: float) -> None:
         if driver.kind.angular and farthest > LARGEST_ANGLE:
             raise ModelError(
                 f"{packed.name}: driver '{driver.name}' turns to {written(farthest, 'rad', 4)} by t = {end:.6g} s, "
-                "where numbers no longer tell one angle from the next; end the motion earlier, or let the law repeat"
+                "too large to resolve a position within the turn. End the motion earlier, or let the law repeat"
             )
         if driver.kind.constraints == ("distance",) and values[:, 0].min() <= 0:
             raise ModelError(

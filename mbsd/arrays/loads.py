@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 COLUMNS = 9
 """Number of columns of Loads.interaction."""
 SHAPES = {"pin": PIN, "guide": GUIDE, "slot": 2}
-"""What the kernels call the pairs of :attr:`mbsd.model.joint.JointKind.pair`."""
+"""Kernels' codes for the pairs of :attr:`mbsd.model.joint.JointKind.pair`."""
 SHARP = 1e-9
 """Slip speed, in sizes/s, of joints that stick, where no simulation looks for the events."""
 

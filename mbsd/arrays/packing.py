@@ -26,7 +26,7 @@ from mbsd.model.mechanism import Model
 MOST_KEPT = 60
 """Coordinates of mechanisms whose arrays and start are kept for the next solution."""
 SMALLEST_SIZE = 1e-12
-"""Below this (m) all joints sit at the centres of mass, and 1 m serves as size."""
+"""Size (m) below which all joints sit at the centres of mass, and 1 m serves as size."""
 
 
 class Arrays(NamedTuple):
@@ -157,17 +157,17 @@ class Packed:
     motions: list[Motion]
     """Motions of the drivers, in order; motion k of the tables is ``motions[k - 1]``."""
     contacts: int
-    """How many of the joints are contacts."""
+    """Number of the joints that are contacts."""
     specials: Specials
     """Constraints of relative pose by name, and the user's functions among them."""
     size: float
     """Characteristic length (m): the largest distance between joints, or joint and centre of mass, of one body."""
     constant: tuple[bytes, ...] | None
-    """What ``numbers`` has of all but the angle offsets."""
+    """The bytes of ``numbers`` but for the angle offsets."""
     phases: dict[str, float] = field(default_factory=dict)
     """Constants of meshes with play (m) by the names of their forces; see mbsd/arrays/starts.py."""
     states: int = 0
-    """How many of the last bodies hold states of forces; see mbsd/arrays/states.py."""
+    """Number of the last bodies that hold states of forces; see mbsd/arrays/states.py."""
     bars: dict[str, float] = field(default_factory=dict)
     """Lengths of the bars by their names (m)."""
 

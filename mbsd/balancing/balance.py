@@ -47,7 +47,7 @@ class Weight:
 
 @dataclass(frozen=True)
 class Shaft:
-    """A balance shaft that was found: mass times radius (kg m), its direction where the crank's angle is 0 (rad)."""
+    """A balance shaft: mass times radius (kg m), and direction (rad) where the crank's angle is 0."""
 
     ratio: float
     moment: float
@@ -58,7 +58,10 @@ class Shaft:
 
 @dataclass(frozen=True, eq=False)
 class Balance(Suggesting):
-    """Weights and shafts that balance a mechanism; ``before`` and ``after`` by quantity, RMS or peak (N, N m)."""
+    """Weights and shafts that balance a mechanism.
+
+    ``before`` and ``after`` are by quantity, RMS or peak (N, N m).
+    """
 
     weights: tuple[Weight, ...]
     shafts: tuple[Shaft, ...]
@@ -66,13 +69,14 @@ class Balance(Suggesting):
     before: Mapping[str, float]
     after: Mapping[str, float]
     series: Mapping[str, np.ndarray]
-    """By quantity (T,) or (T, 2), with what was found."""
+    """Quantities (T,) or (T, 2) by name, with the weights and shafts."""
     mechanism: Any
 
     def apply(self) -> None:
-        """Put the counterweights on the bodies of the mechanism: mass, centre of mass, inertia and products follow.
+        """Put the counterweights on the bodies of the mechanism.
 
-        Balance shafts are bodies of their own, which the author adds where there is room for them.
+        Mass, centre of mass, inertia and products follow. Balance shafts are bodies of their own, which the author adds
+        where there is room for them.
         """
         for weight in self.weights:
             _carry(self.mechanism.bodies[weight.body], weight)
@@ -247,7 +251,10 @@ def _measure(values: np.ndarray, norm: str, shares: np.ndarray) -> float:
 
 
 def _shares(t: np.ndarray) -> np.ndarray:
-    """(T,) weights of the trapezoidal rule, whose sum is 1; over a whole period it is exact for all low harmonics."""
+    """Return (T,) weights of the trapezoidal rule, whose sum is 1.
+
+    Over a whole period the rule is exact for all low harmonics.
+    """
     if len(t) < 2:
         return np.ones(len(t))
     gaps = np.diff(t)

@@ -1,4 +1,4 @@
-"""The vectors u_1, u_2, ... of the plane that make b + sum_k C_k (u_x, u_y, |u|)_k least, each no longer than a bound.
+"""Plane vectors u_k that minimise b + sum_k C_k (u_x, u_y, |u|)_k, each no longer than its bound.
 
 Least in the mean square: by linear least squares where lengths play no part and no bound is reached, else by SLSQP on
 the normal equations. Least at its peak: the least t with |row_i|^2 <= t^2 at every time i, by SLSQP from there.
@@ -46,7 +46,10 @@ def least_mean_square(b: np.ndarray, columns: np.ndarray, bounds: np.ndarray) ->
 def least_peak(
     b: np.ndarray, columns: np.ndarray, bounds: np.ndarray, width: np.ndarray, start: np.ndarray
 ) -> np.ndarray:
-    """Like :func:`least_mean_square`, for the largest of the groups of rows; ``width`` (n,) numbers their groups."""
+    """Return the vectors that minimise the largest of the groups of rows.
+
+    ``width`` (n,) numbers their groups; the rest is as in :func:`least_mean_square`.
+    """
     size = _sizes(start, bounds)
     groups = int(width.max()) + 1
 
@@ -125,7 +128,7 @@ def _sizes(u: np.ndarray, bounds: np.ndarray) -> np.ndarray:
 
 
 def _starts(free: np.ndarray, bounds: np.ndarray) -> list[np.ndarray]:
-    """The solution without lengths, shortened to the bounds, and vectors of its sizes in several directions."""
+    """Return starts: the solution without lengths, cut to the bounds, and its sizes in other directions."""
     length = np.hypot(*free.T)
     clipped = free * np.minimum(1.0, bounds / np.maximum(length, np.finfo(float).tiny))[:, None]
     around = [np.array([np.cos(a), np.sin(a)]) for a in 2 * np.pi * np.arange(TURNS) / TURNS]

@@ -13,10 +13,13 @@ from mbsd.model.body import Marker
 
 @dataclass(frozen=True)
 class Counterweight(Suggesting):
-    """A point mass on a body, at a given radius about a marker; how heavy it is and in which direction are sought."""
+    """A point mass on a body, at a given radius about a marker.
+
+    Its mass and its direction are sought.
+    """
 
     about: Marker
-    """On the body that carries it, such as the pin on which that turns."""
+    """Place on the body that carries it, such as the pin on which that turns."""
     radius: float
     """Distance from the marker (m)."""
     largest: float = math.inf
@@ -50,7 +53,10 @@ class Counterweight(Suggesting):
 
 @dataclass(frozen=True)
 class BalanceShaft(Suggesting):
-    """A shaft with an eccentric mass that turns ``ratio`` times as fast as the crank, below 0 the other way round."""
+    """A shaft with an eccentric mass that turns ``ratio`` times as fast as the crank.
+
+    Below 0 it turns the other way round.
+    """
 
     ratio: float
     at: tuple[float, float] = (0.0, 0.0)

@@ -272,9 +272,10 @@ CHECKS: dict[str, Callable[[str, Any], object]] = {
     "bool": switch,
     "str": text,
 }
-"""By annotation; they return what the function is given. Bodies and markers enter theirs (mbsd/model/body.py)."""
+"""Checks by annotation; they return what the function is given. Bodies and markers enter theirs (mbsd/model/body.py).
+"""
 ORDERED = {"Body | str", "Marker"}
-"""What is easily given at the wrong place: errors of these tell the order of the arguments."""
+"""Types that are easily given at the wrong place: their errors tell the order of the arguments."""
 
 
 def annotation_of(parameter: inspect.Parameter) -> str:

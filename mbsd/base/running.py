@@ -91,7 +91,7 @@ def _on_interrupt(number: int, frame: FrameType | None) -> None:
 
 T = TypeVar("T")
 MOST = 64
-"""So many results of one function are kept, the oldest go first."""
+"""Number of results of one function that are kept; the oldest go first."""
 
 
 class Kept(Generic[T]):

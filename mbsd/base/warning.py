@@ -39,7 +39,7 @@ def _depth_of_user(frame: FrameType) -> int:
 
 _LOCK = threading.Lock()
 _within: list[warnings.catch_warnings[None]] = []
-"""What puts back, once for each block that runs; the first alone did anything."""
+"""Contexts that restore warnings, one for each block that runs; only the first changed anything."""
 
 
 @contextmanager

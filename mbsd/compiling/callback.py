@@ -42,7 +42,7 @@ SIGNATURE = types.void(types.float64, types.CPointer(types.float64), types.CPoin
 PROTOTYPE = ctypes.CFUNCTYPE(None, ctypes.c_double, ctypes.c_ssize_t, ctypes.c_ssize_t)
 """The same for ctypes, with the addresses as whole numbers."""
 OF_NUMBERS = ArithmeticError, ValueError
-"""What functions raise where they overflow or leave their domain."""
+"""Errors that functions raise if they overflow or leave their domain."""
 
 
 class WrongValue(Exception):

@@ -141,7 +141,7 @@ _OURS.register(types.Array, _ArrayModel)
 _OURS.register(types.NamedTuple, RecordModel)
 _OURS.register(types.NamedUniTuple, RecordModel)
 MODELS = _OURS.chain(default_manager)
-"""How values stand in machine code: as numba has it, but for arrays as arguments, and for named tuples."""
+"""Layout of values in machine code: as numba has it, but for arrays as arguments, and for named tuples."""
 
 
 def _getattr_of_record(context: Any, builder: Any, kind: Any, value: Any, name: str) -> Any:

@@ -45,7 +45,7 @@ _HERE = _PACKAGE.parent
 _ABOUT_THE_CACHE = {str(_PACKAGE / "compiling" / name) for name in ("kernel_cache.py", "kernel_files.py", "notice.py")}
 """Files that decide where code is kept and what is said, not what it does."""
 KEPT = 4
-"""So many versions of one file's kernels are kept."""
+"""Number of versions of one file's kernels that are kept."""
 
 _IMPORT = re.compile(r"^(?:from\s+([\w.]+)\s+import\s+(\([^)]*\)|[^\n]*)|import\s+([^\n]*))", re.MULTILINE)
 

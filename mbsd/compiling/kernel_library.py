@@ -17,7 +17,7 @@ from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
 from mbsd.compiling.kernel_arguments import refuse_others
 
 LINKED = "linked"
-"""How a library is kept of which there is no machine code."""
+"""Mark of a library of which there is no machine code."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class KernelLibrary(JITCodeLibrary):
         self.only_linked = False
         """True if it is linked into its callers and never run itself."""
         self.apart: Apart | None = None
-        """What this library is to its callers, if it is not linked into them."""
+        """This library as its callers see it, if it is not linked into them."""
         self.calls: dict[str, Apart] = {}
         """Kernels that must be loaded before this one, by name."""
         self.cells: dict[str, Any] = {}

@@ -25,7 +25,7 @@ LOG = logging.getLogger("mbsd")
 COMPILE = "mbsd.compile"
 """Name, in machine code, of what fills a cell."""
 READY, STOPPED, FAILED = 0, 1, 2
-"""What it returns."""
+"""Codes that it returns."""
 
 
 @dataclass

@@ -1,1 +1,4 @@
-"""Deals work out to workers: a Dask cluster's, or processes of this machine. It knows no mechanism and no stage."""
+"""Deal of work to workers of a Dask cluster or processes of this computer.
+
+It knows no mechanism and no stage.
+"""

@@ -1,4 +1,4 @@
-"""The connection with a Dask cluster, the certificates that keep others out of it, and what its scheduler knows."""
+"""The connection with a Dask cluster, its certificates, and facts that its scheduler knows."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ TIMEOUT = 10.0
 
 @contextmanager
 def connected(where: str, voice: Voice) -> Iterator[Client]:
-    """Return a client of the scheduler at ``where``, closed afterwards. Raises the voice's error if none answers."""
+    """Return a client of the scheduler at ``where``, closed afterwards.
+
+    Raises the voice's error if none answers.
+    """
     try:
         from distributed import Client
     except ImportError as error:
@@ -72,9 +75,10 @@ def _security(where: str, voice: Voice) -> Security | None:
 
 
 def workers_of(client: Client) -> dict[str, Any]:
-    """Return all workers that the scheduler knows, by address. Raises OSError or RuntimeError without an answer.
+    """Return all workers that the scheduler knows, by address.
 
-    The scheduler is asked itself: what the client keeps is replaced now and then by a list without workers.
+    Raises OSError or RuntimeError without an answer. The scheduler is asked itself: what the client keeps is replaced
+    now and then by a list without workers.
     """
     scheduler: Any = client.scheduler
     answer: Any = client.sync(scheduler.identity, n_workers=-1, callback_timeout=TIMEOUT)
@@ -92,7 +96,10 @@ def tasks_of(client: Client) -> dict[str, int]:
 
 
 def size_of(client: Client, key: str) -> int:
-    """Return bytes of a result, as its worker reported; 0 where there is none or the scheduler does not answer."""
+    """Return the bytes of a result, as its worker reported; 0 if that is unknown.
+
+    It is unknown where there is no result or the scheduler does not answer.
+    """
     try:
         answer: Any = client.nbytes(keys=[key], summary=False)
     except (OSError, KeyError, RuntimeError):

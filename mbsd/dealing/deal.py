@@ -1,4 +1,7 @@
-"""Deals orders out to workers: to each what it can do, nothing lost with one that goes, nothing kept twice."""
+"""Deal of orders to workers: each gets what it can do, nothing is lost or kept twice.
+
+Work of a worker that goes is dealt again.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +30,7 @@ SOON = 2.0
 WAIT = 60.0
 """Seconds without a worker after which it is given up."""
 ATTEMPTS = 3
-"""On workers, after which an order itself may be at fault."""
+"""Number of workers after whose failure an order itself may be at fault."""
 DEATHS = 4
 """Workers that went while they had an order alone, after which it counts as what ends them; seen to end by it, two."""
 
@@ -38,7 +41,7 @@ class Part(NamedTuple):
     results: list[tuple[Any, Any]]
     """Keys and results, each key once."""
     note: Any
-    """What it said of them together; None where there is nothing."""
+    """The worker's note on them together; None if there is none."""
     worker: str
 
 
@@ -76,7 +79,7 @@ class Deal:
         self._lost_one = False
         """True if a worker that was fit has gone; whoever keeps it may start it again."""
         self._reported = ""
-        """What was said of the waiting."""
+        """The last report on the waiting."""
 
     def results(self) -> Iterator[tuple[Any, Any, str]]:
         """Yield key, result and worker of every order as they come, each once. Raises the voice's error."""

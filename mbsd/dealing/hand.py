@@ -39,7 +39,7 @@ class Hand:
     """Groups that it does at a time."""
     fit: bool = False
     aside: str = ""
-    """Why it is left out."""
+    """Reason why it is left out."""
     stalled: bool = False
     each: float = math.inf
     """Seconds an order; infinite as long as it is not known."""
@@ -49,10 +49,10 @@ class Hand:
     failures: int = 0
     resting: float = 0.0
     began: float = 0.0
-    """When it got at its first group."""
+    """Time at which it began its first group."""
     made: int = 0
     tasks: int = 0
-    """That it had when it was looked at last, those of other coordinators included."""
+    """Tasks of the worker at the last look, those of other coordinators included."""
 
     def is_ready(self) -> bool:
         """True if the worker can get another group."""
@@ -111,7 +111,10 @@ class Hand:
         return silent > max(manner.times * self.each * len(self.groups[0].keys), manner.patience)
 
     def remaining(self) -> dict[Key, float]:
-        """Return seconds until each of its orders should be done, last one last; infinite if its pace is unknown."""
+        """Return seconds until each of its orders should be complete, last one last.
+
+        They are infinite if its pace is unknown.
+        """
         passed = time.monotonic() - self.began
         keys = [key for group in self.groups for key in group.keys]
         if not math.isfinite(self.each) or self.stalled:

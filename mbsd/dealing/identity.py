@@ -1,4 +1,7 @@
-"""Versions and sources of a computer. Equal identities give equal results, as far as the processors do."""
+"""Versions and sources of a computer.
+
+Equal identities give equal results, as far as the processors do.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ class Trust(NamedTuple):
     ours: Mapping[str, str]
     """Versions and sources of this machine by name."""
     request: Callable[[], bytes]
-    """What a worker runs to say the same of itself, as JSON."""
+    """Function that a worker runs to give its own identity, as JSON."""
 
 
 def versions(packages: Iterable[str]) -> dict[str, str]:
@@ -47,7 +50,7 @@ def asker(module: str, function: str, *arguments: Any) -> Callable[[], bytes]:
 
 
 def differences(theirs: Mapping[str, str], ours: Mapping[str, str]) -> str:
-    """Return where another machine differs from this one: ``numpy 2.4.0, here 2.5.5``; empty if it does not."""
+    """Return where another computer differs: ``numpy 2.4.0, here 2.5.5``; empty if it does not."""
     names = [name for name in ours if theirs.get(name) != ours[name]]
     return "; ".join(f"{name} {theirs.get(name, 'unknown')}, here {ours[name]}" for name in names)
 

@@ -1,4 +1,4 @@
-"""Terms of a deal: the work asked of workers, how much they get at once, when they are given up, and in which words."""
+"""Terms of a deal: the work, its size a worker, the times after which a worker is given up, the words."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Kind(NamedTuple):
     needed: Mapping[str, Callable[[], bytes]] = MappingProxyType({})
     """Contents that a worker may ask for, by name."""
     salt: str = ""
-    """So that not all deals begin with the same worker."""
+    """Text that keeps all deals from beginning with the same worker."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Manner:
     """Numbers by which work is dealt out. Times are in seconds."""
 
     target: float = 4.0
-    """What a group of orders takes."""
+    """Time (s) that a group of orders should take."""
     largest: int = 64
     """Orders in a group."""
     ahead: int = 2
@@ -63,8 +63,10 @@ class Manner:
 
 
 class Voice(NamedTuple):
-    """Words of one program, with ``{where}`` the scheduler is, ``{shown}`` workers and why they do nothing, and others
-    that stand in these texts.
+    """Words of one program.
+
+    ``{where}`` is the scheduler's place, ``{shown}`` are workers and the reasons why they do nothing; other fields
+    stand in these texts.
     """
 
     say: Callable[[str], None]
@@ -81,7 +83,7 @@ class Voice(NamedTuple):
     without: str
     """No worker is there that can do it now."""
     one_comes: str
-    """What the dealer waits for then, in words."""
+    """The event that the dealer then waits for, in words."""
     lied: str
     failed: str
     left_out: str

@@ -60,10 +60,10 @@ class Here:
 
 
 class Processes(Here):
-    """Processes of this machine, each begun with ``begin(*arguments)``. One that is killed has a successor.
+    """Processes of this computer, each begun with ``begin(*arguments)``.
 
-    They import nothing of the script that started them, and end with the process that did, however it ends. Raises
-    ImportError where loky is not installed.
+    One that is killed has a successor. They import nothing of the script that started them, and end with the process
+    that did, however it ends. Raises ImportError where loky is not installed.
     """
 
     def __init__(self, count: int, begin: Callable[..., None], *arguments: Any) -> None:
@@ -181,7 +181,7 @@ class Dask(Here):
 
 
 def run_aside(function: Callable[[], None]) -> None:
-    """Run in a thread of its own that holds up neither the answers of other workers nor the end of the program."""
+    """Run in a thread that delays neither answers of other workers nor the end of the program."""
     with suppress(RuntimeError):  # the program ends
         threading.Thread(target=function, daemon=True).start()
 

@@ -19,7 +19,7 @@ IDENTITY = 100_000
 OF_LENGTH = 4
 
 Key = Any
-"""What an order is called: a text or a whole number."""
+"""Name of an order: a text or a whole number."""
 
 
 @dataclass
@@ -33,7 +33,7 @@ class Report:
     failed: tuple[Key, str] | None = None
     """Key and reason of the one that did not, after which the group was given back."""
     note: bytes = b""
-    """What is said of all these results together."""
+    """Note on all these results together."""
     seconds: float = 0.0
 
 
@@ -79,7 +79,10 @@ def read_report(answer: Any, keys: Sequence[Key], needed: Collection[str], most:
 
 
 def read_identity(answer: Any) -> dict[str, str]:
-    """Return versions and sources of a worker by name, from JSON. Raises WrongAnswer if it is anything else."""
+    """Return versions and sources of a worker by name, from JSON.
+
+    Raises WrongAnswer if it is anything else.
+    """
     if isinstance(answer, BaseException):
         raise WrongAnswer(printable(f"{type(answer).__name__}: {answer}"))
     refuse_large(len(answer) if isinstance(answer, bytes) else 0, IDENTITY)
@@ -141,11 +144,17 @@ LONGEST = 400
 
 
 class WrongAnswer(Exception):
-    """A worker sent something else than what was ordered; the message tells what. No other worker is to blame."""
+    """A worker sent something else than ordered; the message tells what.
+
+    No other worker is to blame.
+    """
 
 
 def printable(text: str, longest: int = LONGEST) -> str:
-    """Return a text from another machine for a message: one line of printable characters, cut where it is too long."""
+    """Return a text from another computer for a message: one line of printable characters.
+
+    It is cut where it is too long.
+    """
     line = "".join(letter if letter.isprintable() else " " for letter in text[: longest + 1])
     line = " ".join(line.split())
     return line if len(text) <= longest else f"{line[:longest]}..."

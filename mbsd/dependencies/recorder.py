@@ -185,4 +185,4 @@ EVENTS: dict[str, Callable[..., None]] = {
     "ctypes.dlopen": lambda recorder, path: recorder.read(path) if os.sep in str(path) else None,
     "subprocess.Popen": _started,
 }
-"""By audit event, what a recorder makes of it."""
+"""Action of a recorder by audit event."""

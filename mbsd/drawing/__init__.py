@@ -1,1 +1,1 @@
-"""A model shown: skeleton with the standard symbols (matplotlib, extra ``draw``), and its topology as SVG."""
+"""Drawings of a model: its skeleton (matplotlib, extra ``draw``) and its topology as SVG."""

@@ -33,7 +33,7 @@ class Label:
     colour: str
     size: float
     carrier: Carrier | None = None
-    """What carries it through a motion; None: nothing does."""
+    """Carrier of it through a motion; None if nothing carries it."""
 
 
 @dataclass(eq=False)
@@ -55,9 +55,9 @@ class Canvas:
     """Turns of the springs drawn, by force: a spring that moves keeps them."""
     labels: list[Label] = field(default_factory=list)
     carrier: Carrier | None = None
-    """What carries what is being drawn through a motion; None: nothing does, and it is drawn anew in every pose."""
+    """Carrier through a motion of all that is being drawn; None if it is drawn anew in every pose."""
     sign: str | None = None
-    """What is being drawn, where it is shown on demand: a canvas that records keeps it."""
+    """Name of the sign that is being drawn, if shown on demand: a canvas that records keeps it."""
 
     anew: bool = False
     """True if nothing carries what is being drawn, whatever its symbol says."""
@@ -182,13 +182,16 @@ class Canvas:
 
 DIRECTIONS = 16
 DISTANCES = (0.0, 0.5, 1.1, 1.9, 3.0, 4.5)
-"""Beyond the clearance, in heights of the text."""
+"""Distances beyond the clearance, in heights of the text."""
 MARGIN = 2.0
 """Points kept free around a name."""
 
 
 def place_names(canvas: Canvas) -> None:
-    """Draw all names of a canvas whose limits are set. Joints come before bodies, in the order they were asked for."""
+    """Draw all names of a canvas whose limits are set.
+
+    Joints come before bodies, in the order they were added.
+    """
     from matplotlib.patheffects import withStroke
 
     ax = canvas.ax
@@ -225,9 +228,10 @@ def _candidates(anchor: np.ndarray, label: Label, size: np.ndarray, unit: float)
 
 
 def offsets(clearance: float, size: np.ndarray, directions: int, distances: Sequence[float]) -> list[np.ndarray]:
-    """Return the ways from an anchor to middles of a word of ``size`` (2,), ``clearance`` away (pixels) and farther.
+    """Return the offsets from an anchor to middles of a word of ``size`` (2,).
 
-    ``directions`` are counted round the anchor, ``distances`` are beyond the clearance, in heights of the word.
+    They are ``clearance`` away (pixels) and farther. ``directions`` are counted round the anchor, ``distances`` are
+    beyond the clearance, in heights of the word.
     """
     out = []
     order = sorted(range(directions), key=lambda k: abs(k - directions * 3 / 16))
@@ -241,7 +245,7 @@ def offsets(clearance: float, size: np.ndarray, directions: int, distances: Sequ
 
 
 def _cost(box: np.ndarray, points: np.ndarray, boxes: np.ndarray, frame) -> float:
-    """Return the cost of a box (x0, y0, x1, y1) by what it covers: drawn points, other names, the axes' edge."""
+    """Return the cost of a box (x0, y0, x1, y1) by what it covers: points, other names, the axes' edge."""
     inside = (points[:, 0] > box[0]) & (points[:, 0] < box[2]) & (points[:, 1] > box[1]) & (points[:, 1] < box[3])
     over = (boxes[:, 0] < box[2]) & (boxes[:, 2] > box[0]) & (boxes[:, 1] < box[3]) & (boxes[:, 3] > box[1])
     outside = box[0] < frame.x0 or box[1] < frame.y0 or box[2] > frame.x1 or box[3] > frame.y1

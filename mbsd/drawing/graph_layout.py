@@ -1,4 +1,4 @@
-"""Places of a graph's nodes in the plane: drawn distances near those along the edges, boxes that do not overlap.
+"""Positions of a graph's nodes in the plane: distances near those along edges, boxes apart.
 
 Classical scaling of the distances along the edges gives the first places, stress majorisation (SMACOF, weights
 1 / d^2) the final ones; then boxes that overlap are pushed apart. Small graphs are also begun from a few scattered
@@ -22,7 +22,10 @@ UNEVEN = 0.02
 
 
 def layout(edges: list[tuple[int, int]], sizes: np.ndarray, length: float) -> np.ndarray:
-    """Return (n, 2) centres of boxes of ``sizes`` (n, 2), connected ones about ``length`` apart, node 0 lower left."""
+    """Return (n, 2) centres of boxes of ``sizes`` (n, 2), with node 0 lower left.
+
+    Connected ones are about ``length`` apart.
+    """
     count = len(sizes)
     if count == 1:
         return np.zeros((1, 2))
@@ -62,7 +65,10 @@ def _side(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> np.ndarray:
 
 
 def _distances(edges: list[tuple[int, int]], count: int) -> np.ndarray:
-    """Return (n, n) edges on the shortest path between nodes; between parts not connected two more than any other."""
+    """Return (n, n) numbers of edges on the shortest path between nodes.
+
+    Between parts that are not connected it is two more than any other.
+    """
     from scipy.sparse.csgraph import shortest_path
 
     near = np.zeros((count, count))

@@ -44,7 +44,7 @@ INKS: Mapping[str, str] = {
     "gold": "#8a6d00",
     "silver": "#66717b",
 }
-"""By words; shared/contract/materials.py has the same for its materials."""
+"""Colours by words; shared/contract/materials.py has the same for its materials."""
 DRIVEN = "orange"
 ON_GROUND = ("blue", "red", "green", "violet")
 BETWEEN = ("silver", "gold")
@@ -155,7 +155,10 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def literal(draw: F) -> F:
-    """Return ``draw`` with names shown as written: matplotlib takes text between dollar signs for a formula."""
+    """Return ``draw`` with names shown as written.
+
+    Matplotlib takes text between dollar signs for a formula.
+    """
 
     @functools.wraps(draw)
     def inner(*given: Any, **named: Any) -> Any:

@@ -1,4 +1,4 @@
-"""The skeleton for any moment of a motion: the strokes of its first pose, each with its carrier (carriers.py).
+"""The skeleton at any moment: strokes of its first pose, each with its carrier (carriers.py).
 
 A stroke without a carrier is drawn in many poses. Pages that follow a slider redraw the first pose alone, with other
 numbers; extent and size of the symbols stay as they were.
@@ -42,7 +42,7 @@ class Moving:
 
     strokes: list[Carried]
     names: list[tuple[Label, Carrier]]
-    """Those that nothing carries are left out."""
+    """Labels with their carriers; labels that nothing carries are left out."""
     times: np.ndarray
     """(k,) of the shapes (s)."""
     steady: Steady

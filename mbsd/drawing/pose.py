@@ -141,7 +141,10 @@ def tracks_of(sol: Solution) -> Tracks:
 
 
 def _markers_of(m: Model) -> dict[str, Joint | Force]:
-    """Return all that has two markers. Keys of forces and contacts say so, since joints may have the same names."""
+    """Return all that has two markers, by key.
+
+    Keys of forces and contacts say so, since joints may have the same names.
+    """
     forces = {f"force {name}": force for name, force in m.forces.items()}
     return {**m.joints, **m.drivers, **forces, **{f"contact {name}": contact for name, contact in m.contacts.items()}}
 

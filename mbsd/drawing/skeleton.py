@@ -1,4 +1,4 @@
-"""The skeleton: links by their joints, joints by the standard symbols, frames, centres of mass, traced points.
+"""The skeleton: links, joints by standard symbols, frames, centres of mass, traced points.
 
 Pictures of one motion share a :class:`Steady`: extent, size of the symbols, sides of ground's signs, turns of springs.
 """
@@ -144,7 +144,7 @@ def steady_sides(m: Model, poses: Sequence[Pose], unit: float) -> dict[str, np.n
 
 
 def _directions(m: Model, pose: Pose, points: dict[str, np.ndarray], joint: Joint, unit: float) -> list[float]:
-    """Return angles (rad) at which links leave the place where ground's sign goes; of a rod, the rod itself."""
+    """Return angles (rad) at which links leave the place of ground's sign; of a rod, its own."""
     if "distance" in joint.kind.constraints and "ground" in joint.bodies:
         gap = pose.place(joint.j) - pose.place(joint.i)
         along = gap if joint.i.body.name == "ground" else -gap
@@ -153,7 +153,7 @@ def _directions(m: Model, pose: Pose, points: dict[str, np.ndarray], joint: Join
 
 
 def _points(m: Model, pose: Pose, name: str) -> np.ndarray:
-    """Return (k, 2) of all that a body carries: joints, traced points, the places where others slide on it."""
+    """Return (k, 2) of all that a body carries: joints, traced points, places where others slide on it."""
     out: list[np.ndarray] = []
     for joint in (*m.joints.values(), *m.drivers.values()):
         if joint.kind.driven and joint.kind.angular:

@@ -1,4 +1,4 @@
-"""The skeleton as plain polylines, for programs that draw on their own: the same symbols, no matplotlib."""
+"""The skeleton as plain polylines with the same symbols, for programs without matplotlib."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ ROLES = {
     AXIS_X: "x",
     AXIS_Y: "y",
 }
-"""What the colours of the drawing stand for; those of bodies are ``body:`` and the name."""
+"""Meaning of the colours of the drawing; those of bodies are ``body:`` and the name."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Stroke:
     sign: str | None = None
     """``"centre of mass"``, of its mark."""
     carrier: Carrier | None = None
-    """What carries it through a motion; None: nothing does."""
+    """Carrier of it through a motion; None if nothing carries it."""
 
 
 @dataclass(frozen=True)

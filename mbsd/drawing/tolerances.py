@@ -1,4 +1,4 @@
-"""How a result strays: a histogram with its limits, and beside it the part of each dimension in the variance.
+"""Spread of a result: a histogram with its limits, and each dimension's part in the variance.
 
 It takes what :class:`mbsd.Tolerances` has, by name, and knows no more of it.
 """
@@ -26,7 +26,10 @@ GOOD, LATER = PALETTE[0], PALETTE[3]
 
 @literal
 def draw_tolerances(t: Any, axes: Any = None) -> Picture:
-    """Draw into two ``axes``, or a figure of its own. Raises ModelError without matplotlib, or for other axes."""
+    """Draw into two ``axes``, or a figure of its own.
+
+    Raises ModelError without matplotlib, or for other axes.
+    """
     own = axes is None
     left, right = _axes() if own else _two(axes)
     _histogram(left, t)

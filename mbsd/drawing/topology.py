@@ -1,4 +1,4 @@
-"""The topology as SVG: bodies as boxes, joints, drivers and forces as signs between them, redundant ones in red.
+"""Topology as SVG: bodies as boxes, joints, drivers and forces between them, redundant ones in red.
 
 A kind without a sign of its own gets a diamond; drivers a turning or a straight arrow, forces a zigzag. Numbers in SVG
 are given to a tenth of a pixel, so that equal diagrams are equal bytes.
@@ -26,7 +26,7 @@ from mbsd.results.views import Mobility
 MOST_NODES = 600
 """Bodies, joints and drivers that one diagram can show."""
 EDGE = 74.0
-"""From a body to a joint (px)."""
+"""Distance from a body to a joint (px)."""
 BODY_HEIGHT, JOINT = 40.0, 15.0
 MARGIN, HEADING = 26.0, 58.0
 FONT = "DejaVu Sans, Verdana, sans-serif"

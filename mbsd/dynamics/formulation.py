@@ -47,6 +47,9 @@ What the loop of events needs beside (reference coordinates):
     respond(dyn, scratch, force, moving, a, lam)  fill a, lam under ``force``, which is overwritten, after derivative;
                                                   gamma, which stands in scratch.ws.right[0], is taken ``moving`` times
     without_contacts(dyn, contacts)               dyn while all contacts are open
+
+Derivatives of a run (mbsd/derivatives/formulations.py) read per_size and call ``derivative`` alone, and at events what
+the loop of events calls.
 """
 
 from __future__ import annotations
@@ -174,6 +177,11 @@ def add_formulation(kind: type, **kernels: Any) -> None:
             raise TypeError(f"{kind.__name__}: '{name}' is missing")
     for name, kernel in kernels.items():
         _OPERATIONS[name].add(kind, kernel)
+
+
+def has_same_rates(kind: type) -> bool:
+    """Return True if q' = v in a formulation, as in the plane: it brings no ``rates`` of its own."""
+    return rates.kernel_of(kind) is _copy_velocities
 
 
 @inlined

@@ -354,16 +354,11 @@ def _index(dyn, scratch, state, out, settings, genevas, end, steps, before, afte
 
 
 @inlined
-def _index_here(dyn, scratch, state, out, settings, genevas, end, steps, before, after):
-    return _index(dyn, scratch, state, out, settings, genevas, end, steps, before, after)
-
-
-@inlined
 def _never(dyn, scratch, state, out, settings, genevas, end, steps, before, after):
     return PAUSED
 
 
-index = alternatives({Embedding: _index_here}, _never)
+index = alternatives({Embedding: _index}, _never)
 """``advance_past_jumps`` by the usual integrator, from jump to jump of Genevas; never in reference coordinates."""
 
 

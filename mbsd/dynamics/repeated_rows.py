@@ -39,7 +39,7 @@ least to others from which it does not follow."""
 
 
 class Repeated(NamedTuple):
-    """k rows: all of joints and drivers, in order; see exchange.py."""
+    """k rows: all of joints and drivers, in order."""
 
     place: Any
     """(k, 3) int"""
@@ -272,19 +272,9 @@ def _never(dyn, scratch, state, out, settings, repeated, end, steps, before, aft
     return PAUSED
 
 
-@inlined
-def _opens_where(dyn, scratch, repeated, out, first, end):
-    return _opens(dyn, scratch, repeated, out, first, end)
-
-
-@inlined
-def _go_again(dyn, scratch, state, out, settings, repeated, end, steps, before, after, method):
-    return _again(dyn, scratch, state, out, settings, repeated, end, steps, before, after, method)
-
-
-again = alternatives({Embedding: _never}, _go_again)
+again = alternatives({Embedding: _never}, _again)
 """``advance_past_jumps``, with a look at the rows now and then; never in independent coordinates."""
-opens = alternatives({Embedding: _no_row_opens}, _opens_where)
+opens = alternatives({Embedding: _no_row_opens}, _opens)
 """True if a row that did not hold once is open in one of the outputs ``first`` to ``end`` (left out)."""
 
 

@@ -39,7 +39,7 @@ it begins again without normal forces."""
 OVERFLOWS = 1e100
 """Normal forces whose squares may be no number."""
 GOES_ON, AGREES, BEGINS_AGAIN = range(3)
-"""What follows a pass."""
+"""Codes of what follows a pass."""
 SETTLED, FAINT = 1e-12, 0.1
 """Part of the largest normal force that may be left; no less than this part of the largest weight counts as largest."""
 MOST_PASSES = 100

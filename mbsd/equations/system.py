@@ -53,7 +53,7 @@ class System(NamedTuple):
     moving: Any
     """Markers on moving bodies."""
     directed: Any
-    """Those of them whose axis a constraint uses."""
+    """Markers whose axis a constraint uses."""
     point: Any
     angle: Any
     slot: Any

@@ -1,7 +1,8 @@
 """Names for joints, drivers, forces and contacts of your own; docs/extending.md shows some.
 
-Rooms below may move; these names stay. What integrators need is in :mod:`mbsd.extend.integrators`, because it loads the
-compiler; :mod:`mbsd.testing` checks a kind.
+Rooms below may move; these names stay. What integrators need is in :mod:`mbsd.extend.integrators`, and derivatives in
+coordinates of your own in :mod:`mbsd.extend.derivatives`, because these load the compiler; :mod:`mbsd.testing` checks a
+kind.
 """
 
 from mbsd.base.codes import (

@@ -114,7 +114,7 @@ def plan(samples: np.ndarray, kept_rows: np.ndarray, row_body: np.ndarray) -> tu
 
 
 _PLANS: Kept[tuple[Elimination, np.ndarray]] = Kept()
-"""By the samples themselves, which is quicker to ask than to find what is constant in them."""
+"""Eliminations by the samples themselves, which is quicker than to find what is constant in them."""
 
 
 @lru_cache(maxsize=64)

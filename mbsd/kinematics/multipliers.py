@@ -29,13 +29,13 @@ from mbsd.kinematics.elimination import ALL_SOLVED, multipliers_along
 from mbsd.kinematics.prepared import Prepared
 
 JACOBIAN_NUMBERS = 4_000_000
-"""How many numbers of Jacobians are held at once."""
+"""Largest number of entries of Jacobians held at once."""
 DENSE = 36
-"""Up to so many unknowns a dense solve is as fast as one that follows the zeros of J."""
+"""Number of unknowns up to which a dense solve is as fast as one that follows the zeros of J."""
 JUMPED = 1e-6
 """Part of the largest acceleration that is open where an output is taken for one on a jump."""
 BESIDE = 1e-9
-"""How far beside it is looked, in sizes and rad."""
+"""Distance of the poses looked at beside it, in sizes and rad."""
 
 
 @dataclass

@@ -222,7 +222,7 @@ def sweep(system, seq, fac, ws, size, motion, residual, determinant, start, chos
 
 
 LONGEST_STRETCH = 4.0
-"""Beyond this ratio of step lengths the quintic is not trusted; the last (q, v, a) alone predicts."""
+"""Ratio of step lengths beyond which the quintic is not trusted; the last (q, v, a) alone predicts."""
 
 
 @inlined

@@ -39,7 +39,7 @@ class Repetition:
     laws: float | None
     """Common period of the laws (s); None where there is none."""
     turns: int | None
-    """How many of these every body is back after; None where it is not within MOST_TURNS."""
+    """Number of these after which every body is back; None if that is not within MOST_TURNS."""
 
     @property
     def period(self) -> float | None:

@@ -35,9 +35,9 @@ class Prepared:
     factors: Factors
     mobility: Mobility
     groups: Groups | None
-    """Where the mechanism falls apart into groups and blocks; else Newton-Raphson solves it as a whole."""
+    """Groups and blocks of the mechanism, if it has any; else Newton-Raphson solves it as a whole."""
     blocks: Blocks
-    """What of it no closed form covers."""
+    """Blocks that no closed form covers."""
     proved: bool = False
     """True if joints that repeat others are sure to hold where these do not."""
 

@@ -98,8 +98,8 @@ class _Flow:
             at = float(solved.t[-1]) if len(solved.t) else first
             raise SimulationError(
                 f"{self.wide.name}: the states of its forces ({', '.join(self.wide.body_names[-self.wide.states :])}) "
-                f"cannot be followed beyond t = {at:.6g} s of this motion: {solved.message} Look at what lets them "
-                "grow without bound there, such as a closed valve of a cylinder that a driver moves"
+                f"cannot be followed beyond t = {at:.6g} s of this motion: {solved.message} Find what makes them "
+                "grow without bound, such as a closed valve of a driven cylinder"
             )
         out[k:end] = solved.y.T[: end - k]
         self.state = solved.y[:, -1]

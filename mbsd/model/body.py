@@ -95,8 +95,9 @@ class Body(Suggesting):
     mass_given: bool = False
     """True if its mass was given when it was added; one of 0 makes it massless on purpose."""
     derived: frozenset[str] = frozenset()
-    """Which of a bar's ``com`` and ``inertia`` follow from its length and mass, as of a uniform slender rod. They
-    follow every mass that is set; setting them ends that."""
+    """Names of a bar's ``com`` and ``inertia`` if they follow from its length and mass, as of a uniform slender rod.
+    They follow every mass that is set; setting them ends that.
+    """
     z: float | None = None
     """Place of its centre of mass along the normal of the plane (m); None: not given, and 0 where it counts."""
     products: tuple[float, float] = (0.0, 0.0)
@@ -168,7 +169,7 @@ class Body(Suggesting):
     def _along(self, method: str, z: float | None) -> float | None:
         return None if z is None else finite_number(f"{self.owner}: {self.name}.{method}: z", z)
 
-    def take(self, other: Body) -> None:
+    def copy_properties(self, other: Body) -> None:
         """Have the mass properties and the length of another body, given and derived ones, from now on."""
         for key in ("mass", "com", "inertia", "length", "mass_given", "derived", "z", "products"):
             self.__dict__[key] = getattr(other, key)

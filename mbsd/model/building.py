@@ -233,8 +233,8 @@ def checked_event(
             raise ModelError(f"{event}: {what} is {shown(function)}; it must be a function")
         if not seen and type(function).__module__.startswith("numba."):
             raise ModelError(
-                f"{event}: {what} is compiled with numba, and compiled functions cannot take a Moment; name the bodies "
-                "and markers it needs, frames=(arm, tip), and take their numbers as value(t, q, v)"
+                f"{event}: {what} is compiled with numba, and compiled functions cannot take a Moment. Name the bodies "
+                "and markers it needs, frames=(arm, tip), and write it as value(t, q, v) of their numbers"
             )
     if direction not in (-1, 0, 1):
         raise ModelError(f"{event}: direction is {shown(direction)}; it must be 1, -1 or 0")

@@ -171,7 +171,7 @@ def _change_body(m: Model, body: Body, values: Mapping[str, Any]) -> None:
     new = (new_bar if bar else new_body)(m, body.name, **(given_body(body) | dict(values)))
     if body.length is not None and new.length is not None and new.length != body.length:
         _move_ends(m, body, body.length, new.length)
-    body.take(new)
+    body.copy_properties(new)
 
 
 def _move_ends(m: Model, bar: Body, old: float, new: float) -> None:
@@ -212,7 +212,7 @@ class Argument(NamedTuple):
     name: str
     role: Role
     types: tuple[Any, ...]
-    """That it may have; one that is not known where the function stands is text."""
+    """Types that it may have; one that is not known where the function stands is text."""
     needed: bool
     """True if it has no default."""
     several: bool

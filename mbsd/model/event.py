@@ -25,7 +25,7 @@ class Event(Suggesting, WithFunctions):
     terminal: bool = False
     action: Callable[..., object] | None = None
     shortest: float | None = None
-    """How long the shortest thing in the function lasts (s)."""
+    """Duration of the shortest feature of the function (s)."""
     frames: tuple[Marker, ...] = ()
     """Frames whose places and velocities the functions get as numbers; where there are none they get the moment."""
     releases: tuple[str, ...] = ()

@@ -96,14 +96,14 @@ class Mesh:
     """How two gears with play stand in each other's teeth; lengths along their line of action."""
 
     rolled: Callable[[Force, float, float, float], float]
-    """From the angles of the line of centres and of both markers (rad, world): how far they have rolled (m)."""
+    """Function of the angles of the line of centres and of both markers (rad, world): the distance rolled (m)."""
     flanks: Callable[[Force, float, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
     """(2, T) depths of both flanks (m), below 0 where they do not touch, from the constant (m) of the start pose and
     x, y, angle (T,) of marker j in the axes of marker i."""
     pitch: Callable[[Force], float]
-    """Where the pitch point is on the way from marker i (0) to marker j (1)."""
+    """Position of the pitch point on the way from marker i (0) to marker j (1)."""
     period: Callable[[Mapping[str, Any]], float]
-    """From params: after how much rolling (m) teeth repeat."""
+    """Function of params: the distance of rolling (m) after which teeth repeat."""
 
 
 @dataclass(frozen=True)
@@ -166,7 +166,7 @@ class ForceKind(ByName):
 
     name: str
     elements: Callable[[Force], tuple[Element, ...]] = _no_elements
-    """What a force of this kind is made of."""
+    """Elements of a force of this kind."""
     example: Callable[[Any, Marker, Marker], object] | None = None
     """Adds one of this kind between two markers of different bodies; must be given."""
     effort: str = ""
@@ -183,17 +183,17 @@ class ForceKind(ByName):
     journal: Callable[[Force], tuple[float, float]] | None = None
     """Radius (m) of a journal about marker j in a bearing about marker i, and its radial clearance (m)."""
     mesh: Mesh | None = None
-    """Where gears with play stand in their teeth."""
+    """Position in their teeth of gears with play."""
     ideal: Callable[[Force], Joint | None] | None = None
     """The joint whose place it takes, which holds at the start alone; None of a force that starts as bodies do."""
     press: Callable[[Force], Press | None] | None = None
-    """How its surfaces are pressed together at the start, where its ``ideal`` joint holds; None where that does not."""
+    """Function that presses its surfaces together at the start, where its ``ideal`` joint holds; else None."""
     along: Callable[[Force], Element] | None = None
     """The one element along which its interaction acts, without terms, if it acts along one."""
     chamber: Callable[[Force, Masses], Chamber] | None = None
     """The gas behind a piston that its effort comes from, if it does."""
     states: States | None = None
-    """What it carries through a motion beside coordinates and velocities, if it does; it then acts ``along`` a line."""
+    """States that it carries through a motion beside coordinates and velocities; it then acts ``along`` a line."""
     oil: Callable[[Force], OilCylinder] | None = None
     """The cylinder of oil that its effort and its states come from, if they do."""
     outside: bool = False
@@ -203,7 +203,7 @@ class ForceKind(ByName):
     on_bodies: bool = False
     """True if it acts on bodies as a whole, and its markers are no places."""
     look: str = ""
-    """What pictures of solids draw for it: one of ``LOOKS`` in mbsd/model/joint.py."""
+    """Its look in pictures of solids: one of ``LOOKS`` in mbsd/model/joint.py."""
     motor: str = ""
     """The law by which it drives a mechanism as a motor does, if it has such a law."""
     sign: str = ""

@@ -86,18 +86,18 @@ class JointKind(ByName):
     units: tuple[str, str] = ("N", "N m")
     """Units of a driver's effort and, unused for joints, of its value."""
     numbers: Callable[[Mapping[str, Any]], Sequence[Sequence[float] | np.ndarray]] | None = None
-    """From a joint's params: the numbers of each special constraint, in their order."""
+    """Function of a joint's params: the numbers of each special constraint, in their order."""
     problem: Callable[[Mapping[str, Any], float, float], str | None] | None = None
-    """From params and the place (x, y) of marker j against marker i at the start: why this joint cannot be."""
+    """Function of params and the place (x, y) of marker j against marker i at the start: why this joint cannot be."""
     kept: Callable[[Mapping[str, Any], Any, Any], Any] | None = None
-    """From params and places (x, y), arrays of them too: a length (m) that must stay for this joint to be."""
+    """Function of params and places (x, y), arrays of them too: a length (m) that must stay for this joint to be."""
     lengths: tuple[str, ...] = ()
     """Params that are lengths (m), or places of a curve, and say how large the mechanism is."""
     touching: str = ""
     """Where its force acts if that is beside marker j: on a "line" along the x axis of marker i, a "curve" of body i,
     between "discs" about both markers, or at a "place" that follows from its torque."""
     look: str = ""
-    """What pictures of solids draw for it: one of ``LOOKS`` in mbsd/model/joint.py."""
+    """Its look in pictures of solids: one of ``LOOKS`` in mbsd/model/joint.py."""
     symmetry: Callable[[Mapping[str, Any]], int] | None = None
     """From params: the order n of the rotational symmetry of body j about marker j, where its equations do not tell
     n-th parts of a turn apart, as of a wheel that is indexed by its slots.

@@ -213,7 +213,7 @@ def new_bar(
 
 
 SHORTEST = 1e-12
-"""Below this (m) two places count as one; see mbsd/arrays/packing.py."""
+"""Distance (m) below which two places count as one; see mbsd/arrays/packing.py."""
 
 
 def connections(m: Model) -> tuple[Mapping[str, object], ...]:
@@ -294,7 +294,7 @@ def number_given(m: Model, what: str, value: object) -> float:
 
 
 MOST_DEGREES = 1e9
-"""Beyond this an angle's last digit is more than a ten-millionth of a degree, and soon a turn."""
+"""Angle beyond which the last digit is more than a ten-millionth of a degree, and soon a turn."""
 
 
 def start_given(m: Model, name: str, degrees: float, place: tuple[float, float] | None = None) -> Start:

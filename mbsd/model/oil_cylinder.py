@@ -37,10 +37,10 @@ class Flows(NamedTuple):
     """Flows (m^3/s) through valve and leak, and where they come from."""
 
     into_a: np.ndarray
-    """From the valve into chamber A."""
+    """Flow from the valve into chamber A."""
     into_b: np.ndarray
     leak: np.ndarray
-    """From A to B."""
+    """Leakage from A to B."""
     supply: np.ndarray
     """Taken from the supply."""
     tank: np.ndarray

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 SHORTEST, LONGEST = 1e-20, 1e18
 """Durations (s); the universe is 4e17 s old."""
 COPIES = 3
-"""How often the results are in memory at once, about."""
+"""Estimate of how often the results are in memory at once."""
 
 
 def rising_times(m: Model, times: Sequence[float] | np.ndarray, least: int) -> np.ndarray:

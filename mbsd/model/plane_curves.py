@@ -29,7 +29,7 @@ SAME = 1e-9
 TRIED, MOST_TRIED = 8, 512
 """Places of a piece, and pieces, from which it is tried whether the nearest node leads to the foot."""
 CLOSER = 0.7
-"""What squared distances of nodes elsewhere count, since between the places tried they may be nearer still."""
+"""Weight of squared distances of nodes elsewhere, since between the places tried they may be nearer still."""
 ROUNDABOUT = 2.0
 """Ways along the curve longer than this part of the chord lead round more than half a circle, to another part."""
 SHARP = 1.0

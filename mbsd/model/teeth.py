@@ -56,7 +56,7 @@ def gear_problem(params: Mapping[str, Any], x: float, y: float) -> str | None:
     return (
         f"its centres are {distance:.6g} m apart, but a module of {module:g} m and {first} {between} {second} teeth "
         f"need {module:g} * ({first} {between} {second}) / 2 = {wanted:.6g} m. Move a centre or change module or "
-        "teeth; gears with profile shift are given by the radii at which they roll, radius_i= and radius_j="
+        "teeth. Give gears with profile shift by the radii at which they roll, radius_i= and radius_j="
     )
 
 
@@ -96,8 +96,8 @@ def rack_problem(params: Mapping[str, Any], x: float, y: float) -> str | None:
         if abs(y - radius) <= ROUNDED * radius:
             return None
         return (
-            f"the pinion's centre is {y:.6g} m above the rack's x axis, its pitch line, and must be its radius of "
-            f"{radius:g} m above it.{side} Move the rack's marker or the pinion, or change radius"
+            f"the pinion's centre is {y:.6g} m above the rack's x axis, its pitch line; it must be its radius of "
+            f"{radius:g} m above.{side} Move the rack's marker or the pinion, or change radius"
         )
     teeth, module = params["teeth"], params["module"]
     if abs(y - radius) <= PLAY * module:
@@ -105,5 +105,5 @@ def rack_problem(params: Mapping[str, Any], x: float, y: float) -> str | None:
     return (
         f"the pinion's centre is {y:.6g} m above the rack's x axis, its pitch line, but a module of {module:g} m and "
         f"{teeth} teeth need {module:g} * {teeth} / 2 = {radius:.6g} m.{side} Move the rack's marker or the pinion, or "
-        "change module or teeth; a pinion with profile shift is given by the radius at which it rolls, radius="
+        "change module or teeth. Give a pinion with profile shift by the radius at which it rolls, radius="
     )

@@ -34,7 +34,7 @@ LIBRARY = {"sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh",
            "copysign", "ldexp", "frexp", "memset", "memcpy", "memmove"}  # fmt: skip
 """Functions of the C library, which every program has."""
 OF_PYTHON = re.compile(r"Py[A-Z_]\w*|_Py\w*|numba_\w+|NRT_\w+")
-"""What wrappers for Python name: they are never run, and get functions that do nothing."""
+"""Names that wrappers for Python use: they are never run, and get functions that do nothing."""
 ALLOCATES = re.compile(r"NRT_\w*alloc\w*")
 
 
@@ -46,7 +46,7 @@ class MachineCode:
     """
 
     names: dict[str, str] = field(default_factory=dict)
-    """By the name outside, the name inside."""
+    """Names inside by the name outside."""
     libraries: list[Any] = field(default_factory=list)
 
     def add_entry(self, name: str, function: Any, kinds: Sequence[Any]) -> None:

@@ -19,12 +19,12 @@ from mbsd.model.mechanism import Model
 from mbsd.native.equations import NativeEquations
 
 MEMORY, FRAME, JOINT, DRIVER, ENERGY, MASS, INERTIA, GRAVITY, RATE, LOAD = range(10)
-"""How a number is got and set: where it stands in the memory (LOAD: and forces change with it), or by its index."""
+"""Access to a number: where it stands in the memory (LOAD: and forces change with it), or its index."""
 KINDS = ("number", "body", "joint", "driver", "energy", "mass", "inertia", "gravity", "driver", "force")
-"""What a name begins with where it would stand for two things."""
+"""Prefixes of a name that would otherwise stand for two things."""
 STATE, INPUT, PARAMETER, OUTPUT = "state", "input", "parameter", "output"
 OUTSIDE = " from outside"
-"""What the forces that are added for inputs are called."""
+"""Ending of the names of forces that are added for inputs."""
 
 
 @dataclass(frozen=True)

@@ -43,7 +43,7 @@ class Within:
     """Where a number stands in what :func:`mbsd.model.change.change` takes."""
 
     whole: str
-    """What is changed."""
+    """The whole name of the changed number."""
     key: str
     """Its argument."""
     path: str
@@ -56,12 +56,12 @@ class Number:
 
     name: str
     value: float
-    put: Callable[[Model, float], None]
+    assign: Callable[[Model, float], None]
     """Gives a model another value of it. Raises ModelError for one that it refuses."""
     built: Callable[[float], Model] | None = None
     """The model with another value, of a number that a function of the author builds models from."""
     within: Within | None = None
-    """Where it stands, if it is a part of what ``change`` takes."""
+    """Its place, if it is a part of what ``change`` takes."""
     marker: Marker | None = None
     """The marker whose coordinate or angle it is."""
     is_place: bool = False
@@ -69,7 +69,7 @@ class Number:
     vector: float = 0.0
     """Length of the vector that it is a component of (SI); 0 of others."""
     reach: float = 0.0
-    """How far apart the bounds are within which it varies; 0 where there are none."""
+    """Distance of the bounds within which it varies; 0 where there are none."""
 
 
 def numbers_named(m: Model, names: Sequence[str]) -> list[Number]:
@@ -178,7 +178,7 @@ def with_value(m: Model, number: Number, value: float, saved: SavedModel | None 
         return
     saved = saved or SavedModel(m)
     try:
-        number.put(m, value)
+        number.assign(m, value)
         yield m
     finally:
         saved.restore()
@@ -203,7 +203,7 @@ def changed(m: Model, values: Mapping[str, object]) -> Model:
     for name, value in values.items():
         if isinstance(value, tuple):
             for axis, coordinate in zip("xy", value, strict=True):
-                place_in(out, name, axis).put(out, coordinate)
+                place_in(out, name, axis).assign(out, coordinate)
         else:
             change(out, name, lengthened(out, name, float(value)))  # pyright: ignore[reportArgumentType]
     return out
@@ -232,7 +232,7 @@ def put_together(
     for whole, own in together.items():
         change(m, whole, own)
     for number, value in others:
-        number.put(m, value)
+        number.assign(m, value)
 
 
 def _with_inner(path: str, value: Any, new: float) -> Any:
@@ -265,12 +265,14 @@ def _inner(name: str, whole: str, key: str, path: str, value: Any) -> Number | N
         return None
     within = Within(whole, key, path)
 
-    def put(m: Model, new: float) -> None:
+    def assign(m: Model, new: float) -> None:
         given_now = None if not path else _arguments(m, whole)[key]
         change(m, whole, {key: _with_inner(path, given_now, new)})
 
     vector = isinstance(value, tuple | list) and all(map(_is_number, value))
-    return Number(name, at[0], put, within=within, is_place=key == "com", vector=math.hypot(*value) if vector else 0.0)
+    return Number(
+        name, at[0], assign, within=within, is_place=key == "com", vector=math.hypot(*value) if vector else 0.0
+    )
 
 
 def _splits(name: str) -> list[tuple[str, str]]:
@@ -330,13 +332,13 @@ def _of_entry(m: Model, whole: str, rest: str) -> Number | None:
 
 
 def _of_marker(m: Model, name: str, entry: str, side: str, axis: str) -> Number:
-    def put(m: Model, new: float) -> None:
+    def assign(m: Model, new: float) -> None:
         table: Any = next(table for table in connections(m) if entry in table)
         marker: Marker = getattr(table[entry], side)
         table[entry] = replace(table[entry], **{side: replace(marker, **{axis: float(new)})})
 
     [marker] = [getattr(table[entry], side) for table in connections(m) if entry in table]
-    return Number(name, float(getattr(marker, axis)), put, marker=marker, is_place=axis in AXES)
+    return Number(name, float(getattr(marker, axis)), assign, marker=marker, is_place=axis in AXES)
 
 
 def _of_body(m: Model, whole: str, rest: str) -> Number | None:
@@ -367,7 +369,7 @@ def _of_start(m: Model, name: str, body: str, what: str, at: int) -> Number | No
         return None
     first = "angle" if what == "start" else "omega"
 
-    def put(m: Model, new: float) -> None:
+    def assign(m: Model, new: float) -> None:
         if what == "start" and not at:
             start_given(m, body, math.degrees(new))
         table: Any = m.starts if what == "start" else m.velocities
@@ -378,24 +380,24 @@ def _of_start(m: Model, name: str, body: str, what: str, at: int) -> Number | No
 
     value = float(getattr(given_start, first) if not at else given_start.place[at - 1])
     vector = 0.0 if what == "start" or not at else math.hypot(*given_start.place)
-    return Number(name, value, put, is_place=what == "start" and at > 0, vector=vector)
+    return Number(name, value, assign, is_place=what == "start" and at > 0, vector=vector)
 
 
 def _of_trace(m: Model, whole: str, rest: str) -> Number:
-    def put(m: Model, new: float) -> None:
+    def assign(m: Model, new: float) -> None:
         m.traces[whole] = replace(m.traces[whole], **{rest: float(new)})
 
     marker = m.traces[whole]
-    return Number(f"{whole}.{rest}", float(getattr(marker, rest)), put, marker=marker, is_place=rest in AXES)
+    return Number(f"{whole}.{rest}", float(getattr(marker, rest)), assign, marker=marker, is_place=rest in AXES)
 
 
 def _gravity(m: Model, axis: int) -> Number:
-    def put(m: Model, new: float) -> None:
+    def assign(m: Model, new: float) -> None:
         now = m.gravity or (0.0, 0.0)
         m.gravity = (float(new), now[1]) if axis == 0 else (now[0], float(new))
 
     now = m.gravity or (0.0, 0.0)
-    return Number(f"gravity.{'xy'[axis]}", float(now[axis]), put, vector=math.hypot(*now))
+    return Number(f"gravity.{'xy'[axis]}", float(now[axis]), assign, vector=math.hypot(*now))
 
 
 def law_with(m: Model, number: Number) -> Callable[[float], Any] | None:

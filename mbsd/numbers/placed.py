@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.arrays.packing import Packed
+from mbsd.model.body import Marker
 from mbsd.model.force import Force
 from mbsd.model.mechanism import Model
 from mbsd.numbers.saved import SavedModel
@@ -23,7 +24,7 @@ PLACES = ("marker_arm", "marker_axis", "angle_offset", "distance_length", "numbe
 MASSES = ("mass", "inertia")
 NUMBERS_OF_LOADS = ("place", "number", "given", "user_com", "friction_number")
 TABLES_OF_LOADS = ("element", "term", "interaction", "user", "user_body", "friction")
-"""What forces are, without their numbers."""
+"""Tables that describe forces without their numbers."""
 
 
 def repacked(m: Model, packed: Packed, saved: SavedModel) -> Packed | None:
@@ -56,9 +57,19 @@ def _forces(m: Model, saved: SavedModel) -> list[Force] | None:
     if len(m.forces) != len(before):
         return None
     for force, old in zip(m.forces.values(), before.values(), strict=True):
-        if force is not old and not (force.i == old.i and force.j == old.j and force.kind is old.kind):
+        if force is not old and not (same_place(force.i, old.i) and same_place(force.j, old.j)):
+            return None
+        if force.kind is not old.kind:
             return None
     return list(m.forces.values())
+
+
+def same_place(marker: Marker, other: Marker) -> bool:
+    """Return True for one place of a body, whether or not it is the same marker."""
+    if marker is other:
+        return True
+    places = (marker.x, marker.y, marker.angle), (other.x, other.y, other.angle)
+    return marker.body is other.body and places[0] == places[1]
 
 
 def unchanged(table: Mapping[str, Any], saved: SavedModel) -> bool:

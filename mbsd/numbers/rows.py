@@ -31,7 +31,7 @@ class Varied(NamedTuple):
     values: np.ndarray
     """(n,), or (n, k) of what takes k numbers"""
     number: Number | None = None
-    """What ``change`` does not take as a whole."""
+    """A number that ``change`` does not take as a whole."""
 
     @property
     def of_start(self) -> str | None:

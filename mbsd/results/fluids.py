@@ -149,7 +149,7 @@ class HydraulicView(ForceView):
     """Pa"""
     pressure_b: np.ndarray
     flow_a: np.ndarray
-    """From the valve into chamber A (m^3/s)."""
+    """Flow from the valve into chamber A (m^3/s)."""
     flow_b: np.ndarray
     leak: np.ndarray
     """Past the piston, from A to B (m^3/s)."""
@@ -163,15 +163,15 @@ class HydraulicView(ForceView):
     tank_flow: np.ndarray
     """Given back to the tank (m^3/s)."""
     supply_power: np.ndarray
-    """What supply and tank give to the oil together (W): it is the sum of the four below."""
+    """Power that supply and tank give to the oil together (W): it is the sum of the four below."""
     valve_loss: np.ndarray
     """Lost in the valve (W)."""
     leak_loss: np.ndarray
     """Lost past the piston (W)."""
     oil_power: np.ndarray
-    """What compresses the oil (W); negative where it expands."""
+    """Power that compresses the oil (W); negative where it expands."""
     piston_power: np.ndarray
-    """What the oil gives to the piston (W), before friction, stops and the atmosphere."""
+    """Power that the oil gives to the piston (W), before friction, stops and the atmosphere."""
 
     def columns(self, title: str) -> dict[str, np.ndarray]:
         """Return the columns of a force, with pressures, flows, the valve and the power of the supply."""

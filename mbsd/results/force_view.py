@@ -39,7 +39,7 @@ class ForceView(Suggesting):
     name: str
     kind: str
     bodies: tuple[str, ...]
-    """That feel it: first and second of a pair, else those on which it acts."""
+    """Bodies that feel it: first and second of a pair, else those on which it acts."""
     points: np.ndarray
     """(T, bodies, 2) where it acts on each (m, world)."""
     wrenches: np.ndarray

@@ -18,11 +18,11 @@ class FrictionView(Suggesting):
     """Friction of a joint, (T,) arrays."""
 
     rate: np.ndarray
-    """At which it turns (rad/s) or slides (m/s): of its second marker against its first."""
+    """Speed at which it turns (rad/s) or slides (m/s): of its second marker against its first."""
     normal: np.ndarray
-    """What presses it, without preload (N)."""
+    """Normal force, without preload (N)."""
     force: np.ndarray
-    """On its second body, along the way (N), or about the pin (N m)."""
+    """Friction on its second body, along the way (N), or about the pin (N m)."""
 
     @property
     def power(self) -> np.ndarray:

@@ -91,7 +91,7 @@ WHOLE = 1e-6
 SAMPLES = 1024
 """Steps of a turn where the rows are not equally far apart in the angle, at least."""
 EVEN = 1e-9
-"""How far a row may lie beside an equal step of the angle (rad)."""
+"""Largest distance of a row from an equal step of the angle (rad)."""
 REPEATS = 1e-6
 """Part of the largest value by which a quantity may differ after a cycle that it repeats."""
 
@@ -115,7 +115,7 @@ class Orders(Turning):
     phase: np.ndarray
     """Like ``amplitude`` (rad): f = amplitude cos(order phi + phase)."""
     gap: float
-    """How far the quantity is from its value one cycle before, as part of its largest value: 0 where it repeats."""
+    """Distance of the quantity from its value one cycle before, as part of its largest value: 0 where it repeats."""
 
     def index(self, order: float) -> int:
         """The row of an order. Raises ModelError for one that is not there."""

@@ -85,7 +85,7 @@ class Asked:
 
     solved: np.ndarray
     shown: np.ndarray
-    """What their rows are to show."""
+    """Times that their rows show."""
     extra: np.ndarray
     """True if nobody asked for it but a jump."""
     jumps: tuple[tuple[float, float, tuple[str, ...]], ...]

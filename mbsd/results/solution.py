@@ -108,7 +108,7 @@ class Solution(Suggesting, Generic[AnyModel]):
         }
     )
     mechanism: AnyModel
-    """What was solved: a Mechanism, where its methods were asked."""
+    """The solved model: a Mechanism, if it was solved by one of its methods."""
     packed: Packed
     t: np.ndarray
     q: np.ndarray
@@ -122,13 +122,13 @@ class Solution(Suggesting, Generic[AnyModel]):
     stats: Stats
     mobility: Mobility
     route: str = "integration"
-    """How positions were found: in closed form group by group, by Newton-Raphson, or by integration."""
+    """Method that found the positions: in closed form group by group, by Newton-Raphson, or by integration."""
     work: np.ndarray | None = None
     """(T,) of forces and drivers since the start (J), gravity left out, of a simulation."""
     changes: tuple[str, ...] = ()
-    """What was changed of the given start of a simulation to make it consistent."""
+    """Changes of the given start that made a simulation consistent."""
     events: tuple[Happening, ...] = ()
-    """What contacts, stops and events did during a simulation."""
+    """Events of a simulation: of contacts, stops and user events."""
     held: np.ndarray | None = field(default=None, repr=False)
     """(T, m) which rows of J held, of a simulation; None: all."""
     span: tuple[float, float] | None = None

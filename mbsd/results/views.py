@@ -290,11 +290,11 @@ class Mobility(Suggesting):
     """Freedoms that the joints leave."""
 
     nominal: int
-    """By counting rows."""
+    """Degrees of freedom by counting rows."""
     dof: int
-    """By rank."""
+    """Degrees of freedom by rank."""
     redundant_rows: int
-    """How many rows repeat others: the nominal count is wrong by this many."""
+    """Number of rows that repeat others: the nominal count is wrong by this many."""
     redundant: tuple[str, ...]
     """Joints those rows belong to: one removable set."""
     singular: bool

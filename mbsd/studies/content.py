@@ -62,7 +62,7 @@ class Content:
         self.modules: dict[str, ModuleType] = {}
         """Modules of the user that were met, for sending them along."""
         self.whole: dict[str, ModuleType] = {}
-        """Those that count with all that they import."""
+        """Modules that count with all that they import."""
         self.packages: set[str] = set()
         """Top-level names of the installed packages that were met."""
         self.caches: list[Any] = []

@@ -63,9 +63,10 @@ def root_of(function: Callable[..., Any]) -> Path:
 
 
 def loaded_inputs(content: Content, places: Places) -> Inputs:
-    """Return user modules that count as a whole, with their imports, and packages that build and measure reach.
+    """Return user modules that count as a whole, and packages that build and measure reach.
 
-    A module whose file was written after this process began may be loaded as it was before: it counts as changed.
+    Modules come with their imports. A module whose file was written after this process began may be loaded as it was
+    before: it counts as changed.
     """
     inputs = modules_below(
         [(file, package_of(module)) for module in content.whole.values() if (file := file_of(module)) is not None],
@@ -82,7 +83,10 @@ def loaded_inputs(content: Content, places: Places) -> Inputs:
 
 @functools.cache
 def _begun() -> float:
-    """Return when this process began (s since the epoch); if the system does not tell, when this was loaded."""
+    """Return the time when this process began (s since the epoch).
+
+    If the system does not tell, it is the time when this module was loaded.
+    """
     try:
         ticks = float(Path("/proc/self/stat").read_text().rpartition(")")[2].split()[19])
         up = float(Path("/proc/uptime").read_text().split()[0])

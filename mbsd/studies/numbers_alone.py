@@ -82,7 +82,10 @@ class _Numbers:
         return content[self.at].reshape(-1, 8).view(">f8")[:, 0].astype(float)
 
     def values_changed(self, m: Mechanism) -> np.ndarray:
-        """Return (N,) the same of one that was changed, in which other things may be shared. Raises MoreThanNumbers."""
+        """Return (N,) values of a changed mechanism, in which other things may be shared.
+
+        Raises MoreThanNumbers.
+        """
         values, rest = _parts(_bytes(m))
         if len(values) != len(self.at) // 8 or rest != self.parts:
             raise MoreThanNumbers(ELSEWHERE)
@@ -130,7 +133,10 @@ def _known(m: Mechanism) -> Iterator[_Number]:
 def _moved(
     number: _Number, work: Mechanism, numbers: _Numbers, values: np.ndarray, left: set[int]
 ) -> tuple[int | None, set[int]]:
-    """Return the place of a number that differs, and all that move with it; None if it is none of ``left``."""
+    """Return the place of a number that differs, and all that move with it.
+
+    None if it is none of ``left``.
+    """
     for place in sorted(left):
         if values[0, place] != number.value:
             continue

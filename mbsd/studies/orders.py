@@ -1,4 +1,4 @@
-"""Points of a study as orders to this process, to its processes or to a cluster, and checks of the answers.
+"""Points of a study as orders to processes or a cluster, and checks of the answers.
 
 An answer is JSON, which runs nothing when it is read.
 """
@@ -30,7 +30,7 @@ from mbsd.studies.simulated import Simulated
 from mbsd.studies.work import Chunk, Order, Result
 
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite", "cloudpickle")
-"""Those whose version decides what comes out, beside mbsd's own sources and Python."""
+"""Packages whose version decides the results, beside mbsd's own sources and Python."""
 LOCAL = Manner(target=0.5, largest=2000, patience=math.inf, copies=1, first_alone=True)
 TOGETHER = replace(LOCAL, target=2.0)
 """Simulations in one loop, which is made ready for each chunk: as much work as a hundred points."""
@@ -48,7 +48,10 @@ Found = tuple[list[tuple[int, Result]], Inputs]
 
 @functools.cache
 def identity() -> dict[str, str]:
-    """Return the identity of this computer; kept for the process, so a worker reports what it was started with."""
+    """Return the identity of this computer.
+
+    It is kept for the process, so a worker reports what it was started with.
+    """
     return versions(PACKAGES) | {"mbsd": own_sources()[:12]}
 
 
@@ -67,7 +70,10 @@ def by_here(build: Callable[..., Any], measure: Callable[[Any], Any], recorder: 
 
 
 def by_processes(order: Order, count: int, manner: Manner) -> Deals:
-    """Return points for processes of this machine. Raises ModelError if the extra that brings them is missing."""
+    """Return points for processes of this computer.
+
+    Raises ModelError if the extra that brings them is missing.
+    """
     try:
         pool = Processes(count, work.begin, order)
     except ImportError as error:
@@ -89,7 +95,10 @@ def _ended(_: object) -> Result:
 def _dealt(
     pool: Here, kind: Kind, manner: Manner, trust: Trust | None, todo: Mapping[int, Point]
 ) -> Generator[Found, None, None]:
-    """Return the results of all points with their numbers as they come. Raises ModelError where no worker is left."""
+    """Return the results of all points with their numbers as they come.
+
+    Raises ModelError if no worker is left.
+    """
     with closing(pool):
         for results, inputs, _ in Deal(pool, kind, todo, VOICE, manner, trust).parts():
             yield results, inputs or Inputs()
@@ -105,7 +114,10 @@ Numbered = Sequence[tuple[int, Point]]
 
 
 def answer_of(order: Order, points: Numbered, sent: Mapping[str, bytes] | None = None) -> bytes:
-    """Build and measure every point on a worker. A Report as bytes; it fails for what build and measure import."""
+    """Build and measure every point on a worker, and return a Report as bytes.
+
+    It fails for what build and measure import.
+    """
     return answered(lambda chunk: work.chunk(order, chunk), points)
 
 
@@ -135,7 +147,10 @@ def reader(points: Sequence[Point]) -> Callable[[int, bytes], Result]:
 
 
 def own_result(_: int, content: bytes) -> Result:
-    """Return the result of a point. Raises WrongAnswer for anything else than numbers by name, or a reason."""
+    """Return the result of a point.
+
+    Raises WrongAnswer for anything else than numbers by name, or a reason.
+    """
     match _read(content):
         case [None, str() as reason, bool() as passing]:
             return Result(None, reason, passing)

@@ -21,7 +21,10 @@ Point = dict[str, Any]
 
 
 def points_of(grid: Any) -> list[Point]:
-    """Return the points of ``grid`` in order; in a product the last name varies fastest. Raises ModelError."""
+    """Return the points of ``grid`` in order.
+
+    In a product the last name varies fastest. Raises ModelError.
+    """
     if isinstance(grid, Mapping):
         return _product(grid)
     rows = grid.to_dict("records") if hasattr(grid, "to_dict") and hasattr(grid, "columns") else grid

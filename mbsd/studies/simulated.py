@@ -1,4 +1,7 @@
-"""``simulated(...)``: what a study measures by simulations, all points of a chunk in one compiled loop where it can."""
+"""``simulated(...)``: measures of a study by simulations, in one compiled loop where possible.
+
+The loop holds all points of a chunk.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +35,10 @@ Numbers = tuple[dict[str, float] | None, str | None]
 
 @dataclass(frozen=True)
 class Simulated(Suggesting):
-    """Measures of a simulation: the ``measure`` of a study, which knows how to measure many mechanisms at once."""
+    """Measures of a simulation, the ``measure`` of a study.
+
+    It knows how to measure many mechanisms at once.
+    """
 
     measures: Mapping[str, Measure]
     duration: float | None = None
@@ -108,7 +114,10 @@ class Simulated(Suggesting):
 
 
 def _designs(mechanisms: Sequence[Mechanism], fewest: int) -> Designs:
-    """Return mechanisms by their numbers, if they differ in known numbers alone; else each as it was built."""
+    """Return mechanisms by their numbers, if they differ in known numbers alone.
+
+    Otherwise each is as it was built.
+    """
     try:
         if len(mechanisms) < fewest:
             raise MoreThanNumbers(FEW)

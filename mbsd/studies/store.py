@@ -25,9 +25,9 @@ MOST_FILES = 32
 
 
 class Store:
-    """Results of one build and measure by the key of their point; raises ModelError if the folder cannot be used.
+    """Results of one build and measure by the key of their point.
 
-    ``inputs`` are those that are known before anything is computed.
+    Raises ModelError if the folder cannot be used. ``inputs`` are those that are known before anything is computed.
     """
 
     def __init__(self, folder: str | os.PathLike[str], study: str, places: Places, inputs: Inputs) -> None:
@@ -76,8 +76,9 @@ class Store:
         write_whole(self.folder / self._last, content)
 
     def _read(self) -> list[Path]:
-        """Read all files; one that is damaged goes, and its points are computed again. Those of other inputs stay, in
-        case these come back, but for those that are too many.
+        """Read all files; a damaged one is deleted, and its points are computed again.
+
+        Those of other inputs stay, in case these come back, but for those that are too many.
         """
         read = []
         for file in sorted(self.folder.glob("*.jsonl")):

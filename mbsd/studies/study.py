@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 
 WAY = "way"
-"""What ``attrs`` of a table has of points that were simulated."""
+"""Key in ``attrs`` of a table for how its points were simulated."""
 LOOKED_AT = 9
 """Points from which the way is found."""
 
@@ -130,7 +130,10 @@ def study(
 
 
 def _refuse_measure(build: Callable[..., Mechanism], measure: Simulated, points: Iterable[Point]) -> None:
-    """Raise ModelError for simulations and measures that cannot be, before any is made, by the first that is built."""
+    """Raise ModelError for simulations and measures that the first model built cannot have.
+
+    This is before any is run.
+    """
     for point in itertools.islice(points, LOOKED_AT):
         try:
             m = build(**point)
@@ -189,7 +192,10 @@ def _deals(
     points: Sequence[Point],
     todo: int,
 ) -> Deals:
-    """Return who computes ``todo`` of the points; ``places`` name inputs of build and measure, if recorded."""
+    """Return the deal that computes ``todo`` of the points.
+
+    ``places`` name inputs of build and measure, if recorded.
+    """
     count = cores() if processes is None else processes
     if client is None and count < 1:
         raise ModelError(f"study: processes is {count}; it must be 1 at least")

@@ -30,7 +30,9 @@ def pandas_here() -> Any:
 
 
 def table_of(points: Sequence[Point], results: Sequence[Result], index: Any = None) -> pandas.DataFrame:
-    """Return one row a point: its values, its measures (NaN if it failed), and why it failed (else missing).
+    """Return one row a point: its values, its measures, and the reason if it failed.
+
+    Measures are NaN if it failed; the reason is missing otherwise.
 
     Raises ModelError if measure uses a name that a point or the reason has.
     """

@@ -43,7 +43,7 @@ class Result(NamedTuple):
 
 
 class Chunk(NamedTuple):
-    """A chunk's results in order, the seconds it took, and all that its process has read for this study so far."""
+    """A chunk's results in order, its seconds, and all that its process has read for this study so far."""
 
     results: list[Result]
     seconds: float

@@ -65,14 +65,17 @@ def four_bar(m: Model, packed: Packed) -> list[tuple[int, int]]:
     loops = {body: [number for _, number in markers] for body, markers in places.items() if markers}
     if len(loops) != 4 or len(_revolutes(m)) != 4 or any(len(numbers) != 2 for numbers in loops.values()):
         raise ModelError(
-            f"{m.name}: fit_path: grashof=True needs a four-bar of four pins, and this is another mechanism; leave it "
-            "out, since a design counts only if its links close over the whole motion"
+            f"{m.name}: fit_path: grashof=True needs a four-bar of four pins, and this is another mechanism. Leave it "
+            "out: a design counts only if its links close over the whole motion"
         )
     return [(numbers[0], numbers[1]) for numbers in loops.values()]
 
 
 def grashof_excess(lengths: np.ndarray) -> np.ndarray:
-    """Return (n,) s + l - p - q of lengths (n, 4), relative to their sum; positive where Grashof's condition fails."""
+    """Return (n,) s + l - p - q of lengths (n, 4), relative to their sum.
+
+    It is positive where Grashof's condition fails.
+    """
     ordered = np.sort(lengths, axis=1)
     return (ordered[:, 0] + ordered[:, 3] - ordered[:, 1] - ordered[:, 2]) / ordered.sum(axis=1)
 

@@ -1,4 +1,4 @@
-"""The paths of many designs of one mechanism, all at once in closed form where possible, and their tangents.
+"""Paths of many designs of a mechanism, all at once in closed form where possible, and tangents.
 
 A design is a vector of the numbers that vary. It is either the mechanism itself with other lengths and places, or what
 a function of the author builds from them; the latter is solved with the others as long as only places of markers, of
@@ -74,7 +74,7 @@ class Designs:
         self.links = four_bar(m, packed) if grashof else []
         self.turned = list(dict.fromkeys(body for pin in self.pins for body in pin.bodies))
         self._used = np.zeros(0, bool)
-        """What a function of the author has moved so far of what it may move."""
+        """Numbers that a function of the author has moved so far, of those it may move."""
         middle = (varied.low + varied.high) / 2
         self.at_once = in_closed_form(self.ready)
         if build is not None:
@@ -198,7 +198,10 @@ class Designs:
         return _fixed_numbers(own, self.grids[True]) == _fixed_numbers(other, self.grids[True])
 
     def solved(self, x: np.ndarray, grid: np.ndarray) -> tuple[Model, Prepared, np.ndarray]:
-        """Return the mechanism of one design x (k,), made ready, and its poses (T, nb, 3); the last ones are kept."""
+        """Return the mechanism of one design x (k,), prepared, and its poses (T, nb, 3).
+
+        The last ones are kept.
+        """
         key = x.tobytes(), len(grid)
         if key not in self._solved:
             m = self.model(x)
@@ -244,7 +247,10 @@ def path_of(packed: Packed, marker: Marker, q: np.ndarray) -> np.ndarray:
 
 
 def tangents_of_path(designs: Designs, x: np.ndarray, grid: np.ndarray) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Return derivatives of a design x (k,) by its numbers: of the point (k, T, 2) and, by body, of angles (k, T)."""
+    """Return derivatives by the numbers of a design x (k,): of its point and of angles.
+
+    The point's are (k, T, 2), those of angles (k, T) by body.
+    """
     m, ready, q = designs.solved(x, grid)
     packed, span = ready.packed, (float(grid[0]), float(grid[-1]))
     terms = terms_of(packed, span, loads=False)

@@ -1,4 +1,4 @@
-"""The objective and conditions of an optimisation, and their values and derivatives for one set of numbers."""
+"""Objective and conditions of an optimisation: values and derivatives for one set of numbers."""
 
 from __future__ import annotations
 
@@ -158,7 +158,10 @@ class Moves:
 
 
 def refuse_ends(m: Model, bounds: Bounds, numbers: Sequence[Number]) -> None:
-    """Raise ModelError for two names of one number, and for bounds at whose ends the mechanism refuses the number."""
+    """Raise ModelError for two names of one number, and for bounds that the mechanism rejects.
+
+    Bounds are tried at their ends.
+    """
     for k, number in enumerate(numbers):
         for end in (bounds.low[k], bounds.high[k]):
             try:

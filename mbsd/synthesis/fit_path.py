@@ -39,7 +39,7 @@ class PathFit(Suggesting):
     mechanism: Any
     """The fitted Mechanism."""
     values: dict[str, Value]
-    """By name, the numbers that were varied: a length, or a place (x, y)."""
+    """Varied numbers by name: a length, or a place (x, y)."""
     distances: np.ndarray
     """(N,) of the points from the path; with times, from where the traced point is at its time."""
     path: np.ndarray
@@ -91,13 +91,13 @@ def fit_path(
     progress: Callable[[float, float], object] | None = None,
     better: Callable[[dict[str, Value], float], object] | None = None,
 ) -> PathFit:
-    """Fit lengths and places of a driven mechanism, so that a traced point passes through points (N, 2) (m).
+    """Fit lengths and positions of a driven mechanism to a path through points (N, 2) (m).
 
-    ``vary``: names of bars or rods and the bounds of their lengths, ``(low, high)``; names of joints or traced points
-    and the bounds of their places, ``((low, high), (low, high))``, which mean what they mean in
-    :meth:`mbsd.mechanism.Mechanism.batch`. With ``build``, a function that returns the mechanism, names are those of
-    its arguments, which it gets as numbers, or tuples where there are several bounds.
-    ``point``: the traced point by name, or a marker; it may be left out where there is one.
+    A traced point then passes through them. ``vary``: names of bars or rods and the bounds of their lengths, ``(low,
+    high)``; names of joints or traced points and the bounds of their places, ``((low, high), (low, high))``, which mean
+    what they mean in :meth:`mbsd.mechanism.Mechanism.batch`. With ``build``, a function that returns the mechanism,
+    names are those of its arguments, which it gets as numbers, or tuples where there are several bounds. ``point``: the
+    traced point by name, or a marker; it may be left out where there is one.
 
     Without ``times`` a point counts by its distance from the path, wherever that is and in any order; ``closed`` says
     that the points are a closed curve that is the whole path, so the path must not leave it either. With ``ordered``

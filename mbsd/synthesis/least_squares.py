@@ -53,7 +53,10 @@ class Missed:
 
 @dataclass(frozen=True)
 class Residuals:
-    """A target, the designs, and the conditions on them. Vectors u (n, k) are in parts of the bounds, 0 .. 1."""
+    """A target, the designs, and the conditions on them.
+
+    Vectors u (n, k) are in parts of the bounds, 0 .. 1.
+    """
 
     designs: Designs
     target: Target
@@ -107,7 +110,10 @@ class Residuals:
         return self.designs(x[:, :count], fine), x[:, count:].sum(axis=1)
 
     def _neighbours(self, x: np.ndarray, steps: np.ndarray, fine: bool) -> tuple[Paths, np.ndarray]:
-        """Return the same of designs x (n, k) that differ by a step (n, k) in one number each, along exact tangents."""
+        """Return the same of designs x (n, k) that differ by a step (n, k) in one number each.
+
+        They follow exact tangents.
+        """
         count, k = self.designs.varied.count, x.shape[1]
         shifts = (x[:, None] + steps[:, :, None] * np.eye(k))[..., count:].sum(axis=2).ravel()
         paths = self.designs.neighbours(x[:, :count], steps[:, :count], fine)
@@ -142,7 +148,7 @@ class Residuals:
 FIRST = 1e-2
 """Damping of the first step, in parts of the largest diagonal entry of J^T J."""
 FASTER, SLOWER = 1 / 6, 4.0
-"""What a step that gains and one that does not make of the damping."""
+"""Factors of the damping after a step that gains and after one that does not."""
 STIFFEST = 1e7
 """Damping at which a descent ends."""
 GAIN = 1e-8

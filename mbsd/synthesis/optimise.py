@@ -1,4 +1,4 @@
-"""Optimisation of numbers of a mechanism: a measure of its motion as small or large as conditions allow.
+"""Optimisation of a mechanism's numbers: a measure of its motion as small or large as possible.
 
 Every step runs the motion once and has all derivatives with it (mbsd/derivatives); scipy's SLSQP or trust-constr goes
 on from there, in parts of the bounds. Source: Kraft, DFVLR-FB 88-28 (1988) (SLSQP); Conn, Gould, Toint, Trust-Region
@@ -36,10 +36,10 @@ class Optimum(Suggesting):
     mechanism: Any
     """The Mechanism with the best numbers."""
     values: dict[str, float]
-    """By name, the numbers that were varied."""
+    """Varied numbers by name."""
     objective: float
     conditions: dict[str, float]
-    """By name, what the conditions are of."""
+    """Conditions by name, with their values."""
     gradient: dict[str, float]
     """Slopes of the objective by each number at the end."""
     met: bool
@@ -151,7 +151,10 @@ class _Search:
         self.history: list[float] = []
 
     def motion_at(self, u: np.ndarray) -> Tried:
-        """Return the motion at u; if there is none, one that is worse the farther u is from the last valid one."""
+        """Return the motion at u.
+
+        If there is none, return one that is worse the farther u is from the last valid one.
+        """
         u = np.clip(u, 0.0, 1.0)
         key = u.tobytes()
         if key in self.kept:

@@ -1,4 +1,4 @@
-"""The search for the best design: descents from a spread of designs, differential evolution on, then least squares.
+"""Search for the best design: a spread of descents, differential evolution, least squares.
 
 Many designs of a low-discrepancy sequence (Sobol) are swept, and least squares goes down from the best of them side by
 side. Where none of these meets the target, they begin an evolution over all designs within the bounds. A design that
@@ -40,7 +40,7 @@ DESCENTS = 20
 ROUNDS = 8
 """At most."""
 AGREED, ALIKE = 3, 1e-3
-"""So many that end at costs no farther apart than this part are enough, and so many that come near nothing."""
+"""Number of starts that suffices if their costs agree to this part, or if none comes near the points."""
 STEPS, HALVED = 24, (5, 10)
 """Steps of the descents, and those at which the better half goes on."""
 DESCENDING = 0.3
@@ -83,7 +83,7 @@ class Search:
         return np.append(varied.low, 0.0), np.append(varied.high, last - first)
 
     def run(self, starts: int, seed: int) -> tuple[np.ndarray, list[float]] | None:
-        """Return the best vector and the root mean square (m) that each start ended with; None where no design does."""
+        """Return the best vector and the root mean square (m) of each start; None where no design works."""
         best: np.ndarray | None = None
         worst_of = np.inf
         ends: list[float] = []

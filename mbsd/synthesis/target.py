@@ -52,7 +52,10 @@ class Target:
         return out
 
     def where(self, paths: np.ndarray, shifts: np.ndarray, fine: bool) -> np.ndarray:
-        """Return (n, N) sample numbers of places on paths (n, T, 2) that stand for the points, on chords or exactly."""
+        """Return (n, N) sample numbers of places on paths (n, T, 2) that stand for the points.
+
+        They are on chords or exact.
+        """
         if self.times is not None:
             return self._samples(paths.shape[1], shifts)
         if fine:
@@ -130,7 +133,10 @@ CUTS = 24
 
 
 def nearest_on_chords(paths: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return squared distances (n, N) of points (N, 2) from paths (n, T, 2) of chords, and sample numbers (n, N)."""
+    """Return squared distances (n, N) of points (N, 2) from chords of paths, and sample numbers (n, N).
+
+    Paths are (n, T, 2).
+    """
     distance, ahead = _from_chords(paths, points)
     best = distance.argmin(axis=2)
     take = best[..., None]
@@ -138,11 +144,11 @@ def nearest_on_chords(paths: np.ndarray, points: np.ndarray) -> tuple[np.ndarray
 
 
 def in_order(paths: np.ndarray, points: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Return (n,) least sums of squared distances of points (N, 2), reached one after the other, and the cuts (n,).
+    """Return (n,) least sums of squared distances of points (N, 2) in order, and the cuts (n,).
 
-    Of paths (n, T, 2) of chords; of closed ones the first point may be anywhere, and all follow within one turn after
-    the sample ``cut``. The best place of each point given those before it is found by dynamic programming:
-    S_k(s) = d_k(s)^2 + min over r <= s of S_(k-1)(r).
+    The points are reached one after the other. Of paths (n, T, 2) of chords; of closed ones the first point may be
+    anywhere, and all follow within one turn after the sample ``cut``. The best place of each point given those before
+    it is found by dynamic programming: S_k(s) = d_k(s)^2 + min over r <= s of S_(k-1)(r).
     """
     return _in_order(_from_chords(paths, points)[0], closed)
 
@@ -196,7 +202,7 @@ def feet(path: np.ndarray, points: np.ndarray, closed: bool) -> np.ndarray:
 
 
 def feet_in_order(path: np.ndarray, points: np.ndarray, closed: bool) -> np.ndarray:
-    """Return (N,) sample numbers, rising, at which a path (T, 2) is nearest to points (N, 2) in their order.
+    """Return (N,) rising sample numbers at which a path (T, 2) is nearest to points (N, 2) in order.
 
     Those of a closed path rise from a start anywhere to less than a turn later.
     """

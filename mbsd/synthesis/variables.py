@@ -1,4 +1,4 @@
-"""Variables of a synthesis: names with bounds as one vector, and functions of the author that build from them."""
+"""Variables of a synthesis: names with bounds as one vector, and the author's functions that use them."""
 
 from __future__ import annotations
 
@@ -78,7 +78,10 @@ def varied(name: str, vary: Mapping[str, Any]) -> Varied:
 
 
 def refuse_names(m: Model, given: Varied) -> None:
-    """Raise ModelError for what is no length and no place of ``m``, bounds that do not fit, and lengths not above 0."""
+    """Raise ModelError for names that are no length or position of ``m``, and for invalid bounds.
+
+    Lengths must be above 0.
+    """
     bars = [name for name, body in m.bodies.items() if body.length is not None]
     lengths = [*bars, *(name for name, joint in m.joints.items() if joint.kind.constraints == ("distance",))]
     places = [*m.joints, *m.traces]
@@ -120,7 +123,10 @@ def refuse_build(what: str, build: Any, names: Sequence[str]) -> None:
 def numbers_of_build(
     names: Sequence[str], x: np.ndarray, size: np.ndarray, model: Callable[[np.ndarray], Model]
 ) -> list[Number]:
-    """Return the numbers x (k,) of a mechanism that ``model`` builds; ``size``: (k,) how far their bounds are apart."""
+    """Return the numbers x (k,) of a mechanism that ``model`` builds.
+
+    ``size``: (k,) how far their bounds are apart.
+    """
 
     def place(m: Model, value: float) -> None:
         raise AssertionError("it is built")
@@ -134,7 +140,10 @@ def numbers_of_build(
 
 
 def built(what: str, build: Callable[..., Any], values: Mapping[str, Any]) -> Model:
-    """Return what ``build`` returns. Raises ModelError for anything but a Mechanism, and for errors not of mbsd."""
+    """Return the result of ``build``.
+
+    Raises ModelError for anything but a Mechanism, and for errors not of mbsd.
+    """
     try:
         made = build(**values)
     except MechanismError:

@@ -19,7 +19,7 @@ from mbsd.testing.velocity_rows import fill_nu
 
 SEEDS = range(5)
 TIME, STEP = 0.3, 1e-6
-"""When (s) on the path, and the step of the differences (s, m, rad)."""
+"""Time (s) on the path, and the step of the differences (s, m, rad)."""
 SLOPE, RATE, BEND = 1e-7, 1e-6, 1e-5
 """Tolerances relative to the largest number, or to 1: of J, of its product with v, of gamma."""
 

@@ -1,1 +1,1 @@
-"""Tolerances of a mechanism: how far a result strays as its dimensions do, and which of them to tighten."""
+"""Tolerances of a mechanism: the spread of a result by its dimensions, and which to tighten."""

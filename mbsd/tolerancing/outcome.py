@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 QUANTILES = (0.00135, 0.025, 0.25, 0.5, 0.75, 0.975, 0.99865)
-"""Those of -3 and 3 standard deviations of a normal distribution are the first and the last."""
+"""Quantiles; the first and the last are those of -3 and 3 standard deviations of a normal distribution."""
 
 
 class Row(NamedTuple):
@@ -36,7 +36,7 @@ class Row(NamedTuple):
     share: float
     """Part of the variance, by first derivatives."""
     worst: float
-    """What it adds to the worst case to either side."""
+    """Its part in the worst case, to either side."""
     std_halved: float
     """Standard deviation of the result if it is halved."""
     yield_halved: float
@@ -64,16 +64,16 @@ class Tolerances(Suggesting):
     vertex_worst: tuple[float, float] | None
     """The same, of machines at the corners and in the middle of all tolerances; None where they were not solved."""
     corners_failed: int
-    """How many of the corners failed, so that there is no worst case there but the machine itself."""
+    """Number of corners that failed, so that there is no worst case there but the mechanism itself."""
     limits: Limits | None
     confidence: float
     failures: Mapping[str, int]
-    """How many machines failed for which reason."""
+    """Number of failed mechanisms by reason."""
     halving: Halving
-    """What it would bring to halve each tolerance."""
+    """Gain of halving each tolerance."""
     sobol: Sobol | None
     way: str
-    """How the machines were solved, and where pins with play lie."""
+    """Method by which the mechanisms were solved, and the place of pins with play."""
     name: str
     dimensions: tuple[Dimension, ...]
     slopes: np.ndarray
@@ -81,7 +81,7 @@ class Tolerances(Suggesting):
     shares: np.ndarray
     """(d,) parts of the variance by first derivatives."""
     quantity: str = "result"
-    """What the result is of: a quantity by name, or the name of a function."""
+    """Name of the result: a quantity, or a function."""
 
     def __len__(self) -> int:
         return len(self.values)
@@ -98,7 +98,10 @@ class Tolerances(Suggesting):
 
     @property
     def curved(self) -> bool:
-        """True if first derivatives miss the standard deviation, so that shares and the worst case by them mislead."""
+        """Return True if first derivatives miss the standard deviation.
+
+        Shares and the worst case by them then mislead.
+        """
         return self.halving.again
 
     @property
@@ -112,7 +115,10 @@ class Tolerances(Suggesting):
         return float(self.values[self.good].std(ddof=1))
 
     def quantile(self, part: float) -> float:
-        """The result that a ``part`` of the machines does not exceed. Raises ModelError for a part beyond 0 .. 1."""
+        """Return the result that a ``part`` of the mechanisms does not exceed.
+
+        Raises ModelError for a part beyond 0 .. 1.
+        """
         if isinstance(part, bool) or not isinstance(part, int | float) or not 0.0 <= part <= 1.0:
             raise ModelError(f"{self.name}: tolerances: quantile: part is {part!r}; it must be from 0 to 1")
         return float(np.quantile(self.values[self.good], part))
@@ -124,7 +130,10 @@ class Tolerances(Suggesting):
 
     @property
     def yields(self) -> Yield | None:
-        """The part of all machines within the limits with its Wilson interval; those that failed are not within."""
+        """Return the part of all mechanisms within the limits with its Wilson interval.
+
+        Those that failed are not within.
+        """
         return None if self.limits is None else yield_of(self.values, self.limits, self.confidence)
 
     @property

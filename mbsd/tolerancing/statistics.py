@@ -1,4 +1,4 @@
-"""Statistics of machines with tolerances: yields, the worst, gains of halved tolerances, shares of dimensions.
+"""Statistics of tolerances: yields, worst cases, gains of halved tolerances, shares of dimensions.
 
 The interval of a yield is Wilson's, with k of n good and z standard normal deviations:
 
@@ -95,9 +95,9 @@ def linear_worst(middle: float, slopes: np.ndarray, dimensions: Sequence[Dimensi
 def vertex_worst(
     evaluate: Evaluate, middle: float, slopes: np.ndarray, dimensions: Sequence[Dimension]
 ) -> tuple[tuple[float, float], int]:
-    """Least and largest result at the 2^d corners of all tolerances and in the ``middle``, and how many corners fail.
+    """Return least and largest result at the 2^d corners of all tolerances, and how many corners fail.
 
-    A pin that lies anywhere in its bore lies on either side along its gradient.
+    The ``middle`` counts too. A pin that lies anywhere in its bore lies on either side along its gradient.
     """
     sides = [
         (d.farthest(slopes[part], -1.0), d.farthest(slopes[part], 1.0))
@@ -135,7 +135,10 @@ def curved(values: np.ndarray, linear_std: float) -> bool:
 
 
 def solved_again(values: np.ndarray, all_of_them: bool, count: int) -> np.ndarray:
-    """(n,) machines to be solved again for each of ``count`` dimensions: all, or those that failed if they are few."""
+    """Return (n,) mechanisms to be solved again for each of ``count`` dimensions.
+
+    These are all, or those that failed if they are few.
+    """
     failed = np.isnan(values)
     if all_of_them:
         return np.ones(len(values), bool)
@@ -151,7 +154,10 @@ def halving(
     again: np.ndarray,
     part_within: Callable[[np.ndarray], float],
 ) -> Halving:
-    """Halve one tolerance after the other of machines (n, columns) with results (n,); solve those ``again`` (n,)."""
+    """Halve one tolerance after the other, and solve the mechanisms ``again`` (n,).
+
+    The mechanisms are (n, columns), their results (n,).
+    """
     out = np.zeros((2, len(dimensions)))
     for k, (dimension, part) in enumerate(zip(dimensions, parts(dimensions), strict=True)):
         other = x.copy()
@@ -172,9 +178,9 @@ class Sobol:
     total: np.ndarray
     """(d,) total."""
     machines: int
-    """How many were evaluated."""
+    """Number of evaluated mechanisms."""
     failed: int
-    """How many of them failed; what needs one of these is left out."""
+    """Number of them that failed; results that need one of these are left out."""
 
 
 def linear_variances(slopes: np.ndarray, dimensions: Sequence[Dimension]) -> np.ndarray:

@@ -70,14 +70,15 @@ def tolerances(
     threads: int | None = None,
     progress: Any = None,
 ) -> Tolerances:
-    """Let the dimensions of a mechanism stray, and find what its ``result`` does: n machines, worst case, yield.
+    """Let the dimensions of a mechanism stray, and return the spread of its ``result``.
 
-    ``sizes`` names what strays, by the words of :meth:`Mechanism.batch` and :meth:`Mechanism.change`: a bar or rod by
-    its length, a joint or traced point by its place (m; ``{"D": {"x": 1e-5}}`` for one coordinate), any number by
-    ``{"spring": {"stiffness": 4.0}}``, also of a law, ``{"motor": {"rate": 0.1}}``, a pin by :class:`Clearance`, or by
-    ``{"B": {"x": 1e-5, "play": Clearance(2e-5)}}`` with its place. A tolerance is a number t (+-t, normal with 3
-    standard deviations), a pair (lower, upper), a class of ISO 2768-1 ("m") or a grade of ISO 286-1 ("IT7") by size, or
-    ``Normal``, ``Uniform``, ``Triangular`` of these. A class alone in place of names is that of all bars and rods.
+    It comes from n mechanisms, with worst case and yield. ``sizes`` names what strays, by the words of
+    :meth:`Mechanism.batch` and :meth:`Mechanism.change`: a bar or rod by its length, a joint or traced point by its
+    place (m; ``{"D": {"x": 1e-5}}`` for one coordinate), any number by ``{"spring": {"stiffness": 4.0}}``, also of a
+    law, ``{"motor": {"rate": 0.1}}``, a pin by :class:`Clearance`, or by ``{"B": {"x": 1e-5, "play":
+    Clearance(2e-5)}}`` with its place. A tolerance is a number t (+-t, normal with 3 standard deviations), a pair
+    (lower, upper), a class of ISO 2768-1 ("m") or a grade of ISO 286-1 ("IT7") by size, or ``Normal``, ``Uniform``,
+    ``Triangular`` of these. A class alone in place of names is that of all bars and rods.
 
     ``result``: a measure of :mod:`mbsd.measures` that gives a number, such as ``samples("P.y", [0.25])``,
     ``largest("rocker.theta")``; or a function: of a :class:`Batch` of some of the machines at a time (a number of
@@ -120,7 +121,10 @@ def request_of(
     threads: int | None = None,
     progress: Any = None,
 ) -> Callable[[], Tolerances]:
-    """:func:`tolerances` with everything looked at and the machine as given solved; what it returns does the rest."""
+    """Check a request, solve the given mechanism, and return the function that does the rest.
+
+    See :func:`tolerances`.
+    """
     task = function_task(machine, sizes, result, duration, steps) if not isinstance(machine, Model) else None
     owner = task.owner if task else machine.name
     n = whole_number(f"{owner}: tolerances: n", n, 2)
@@ -162,10 +166,10 @@ def _carried_out(
     slope = slopes(run, dimensions)
     if not np.isfinite([middle, *slope]).all():
         raise ModelError(
-            f"{task.owner}: tolerances: machines {_where(dimensions, middle, slope)} fail ({', '.join(run.failures)}); "
-            "the tolerances are too wide for derivatives, or the motion passes a dead centre: narrow them, or sweep a "
-            "part of the motion (duration=...). Where joints repeat others or gears mesh, only exact lengths close: "
-            "leave those out"
+            f"{task.owner}: tolerances: mechanisms {_where(dimensions, middle, slope)} fail "
+            f"({', '.join(run.failures)}). The tolerances are too wide for derivatives, or the motion passes a dead "
+            "centre. Narrow them, or sweep a part of the motion (duration=...). Where joints repeat others or gears "
+            "mesh, only exact lengths close: leave those out"
         )
     corner, corners_failed = None, 0
     if with_corners:

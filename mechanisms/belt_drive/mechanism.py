@@ -1,5 +1,6 @@
-"""A belt drive: the small pulley turns twice while the large one turns once, and the belt runs as fast as both rims.
-A crossed belt turns the second pulley the other way; a chain does the same with rollers between the teeth of sprockets.
+"""A belt drive: the small pulley turns twice while the large one turns once.
+The belt runs as fast as both rims; a crossed belt turns the second pulley the other way, and a chain does the same with
+rollers between the teeth of sprockets.
 """
 
 from dataclasses import dataclass
@@ -16,7 +17,7 @@ VARIANTS = {
 
 @dataclass(frozen=True)
 class Params:
-    """Pitch radius of the small pulley (m), the ratio, the distance of the axes (m), the driver's speed (rad/s).
+    """Pitch radius of the small pulley (m), ratio, distance of the axes (m), the driver's speed (rad/s).
 
     ``teeth`` of the small sprocket make it a chain. At this distance it is 56 pitches long.
     """

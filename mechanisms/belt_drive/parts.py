@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and a fan on the large pulley, which is what the belt drives."""
+"""The automatic parts, and a fan on the large pulley, which is what the belt drives."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from shared.shapes.solid import Solid
 from shared.shapes.units import mm
 
 BLADES, LONG = 5, 1.9
-"""How many, and how far they reach, in the radius of the large pulley."""
+"""Number of blades, and their reach in the radius of the large pulley."""
 HUB, THICK, PITCH = 1.55, 2.4, 28.0
 """Radius of the hub, in that of an eye; thickness of a blade (mm); its angle against the plane (degrees)."""
 

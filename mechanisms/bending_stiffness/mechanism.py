@@ -1,4 +1,4 @@
-"""A beam of links with torsion springs between them, clamped at its left end: a weight is put on its tip and it swings.
+"""A clamped beam of links with torsion springs between them swings under a weight on its tip.
 Its bending stiffness is that of a steel strip; finer links (a variant) bend ever more like the strip itself.
 """
 
@@ -16,7 +16,7 @@ VARIANTS = {
 
 @dataclass(frozen=True)
 class Params:
-    """Length (m), mass (kg) and bending stiffness E I (N m^2) of the beam, its damping, the force on its tip (N).
+    """Length (m), mass (kg) and bending stiffness E I (N m^2) of the beam, its damping, its tip force (N).
 
     ``damping`` is that of each torsion spring, as a part of its stiffness (s).
     """
@@ -31,7 +31,10 @@ class Params:
 
 
 def build(p: Params) -> Mechanism:
-    """Uniform rods end to end; between two of them a spring of E I / h, twice that at the clamp (Hencky's chain)."""
+    """Uniform rods end to end.
+
+    Between two of them a spring of E I / h, twice that at the clamp (Hencky's chain).
+    """
     m = Mechanism("bending_stiffness", gravity=(0.0, -p.gravity))
     part = p.length / p.links
     before, place = m.ground, m.ground.origin

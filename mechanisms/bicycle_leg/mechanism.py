@@ -16,7 +16,9 @@ VARIANTS = {"no_muscles": {"strength": 0.0}}
 
 @dataclass(frozen=True)
 class Params:
-    """Lengths between the axes (m), slope of the seat tube and angle between shank and sole (degrees), cadence (turns a
+    """Sizes of bicycle and rider, cadence and muscles.
+
+    Lengths between the axes (m), slope of the seat tube and angle between shank and sole (degrees), cadence (turns a
     minute), mass (kg) and height (m) of the rider, from which the leg's lengths and masses follow.
 
     Muscles: peak (N m) of a pulse of torque between two places of the crank (degrees from the top of its turn). They do

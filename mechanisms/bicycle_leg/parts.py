@@ -25,7 +25,7 @@ MUSCLES: dict[str, tuple[str, tuple[Point, ...]]] = {
     "calf": ("shank", ((252, 95), (320, 66), (396, 38), (386, 72), (332, 106), (276, 114))),
     "shin": ("shank", ((140, -28), (210, -46), (300, -54), (370, -38), (390, -30), (300, -26), (210, -26))),
 }
-"""By name: the bone that carries each, and its outline in the frame of that bone (mm)."""
+"""Muscles by name: the bone that carries each, and its outline in the frame of that bone (mm)."""
 
 
 def parts(p: Params) -> Bodies:

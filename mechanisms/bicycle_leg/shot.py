@@ -1,4 +1,7 @@
-"""How leg and muscles are filmed: from the side; the poster shows the muscles that stretch the knee at work."""
+"""How leg and muscles are filmed: from the side.
+
+The poster shows the muscles that stretch the knee at work.
+"""
 
 from shared.shot import Camera, Shot, Sound, Surface, Trail
 

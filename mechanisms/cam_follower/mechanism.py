@@ -18,14 +18,14 @@ VARIANTS = {
     "floating": {"follower": "valve", "speed": 210.0, "DURATION": 0.09},
 }
 RETAINER = (0.034, 0.105)
-"""Where the springs push on the valve: aside of its axis, and over the roller (m)."""
+"""Place where the springs push on the valve: aside of its axis, and over the roller (m)."""
 SPRING = 0.065
 """Length of a spring while the valve is closed (m)."""
 
 
 @dataclass(frozen=True)
 class Params:
-    """Sizes (m), angles of the cam over which it lifts and lowers (rad), the cam's speed (rad/s), weight (m/s^2).
+    """Sizes (m), angles of lift and return (rad), speed of the cam (rad/s) and weight (m/s^2).
 
     ``follower`` is roller, flat, oscillating or valve; an oscillating one is lifted by an angle, ``lift`` over its arm.
     A valve (kg) is pushed on the cam by springs (N/m) that are pressed in by ``preload`` (m) when it is closed.

@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and what the cam lifts: a valve in its guide, over a seat on the base.
+"""The automatic parts, and what the cam lifts: a valve in its guide, over a seat on the base.
 
 An arm that swings lifts none.
 """
@@ -16,11 +16,11 @@ from shared.shapes.workpieces import block, prism
 STEM, HEAD = 5.5, 34.0
 """Half widths (mm)."""
 NECK, RIM = {"valve": 0.192}, (24.0, 5.0)
-"""Where the head begins over the roller (m), by follower; its height along the seat, and that of its rim (mm)."""
+"""Start of the head over the roller (m), by follower; its height along the seat, and that of its rim (mm)."""
 SHORT = 0.148
 """The same without springs, which need length (m)."""
 GUIDE = (2.0, 10.0)
-"""Where no springs are, the stem is guided: so far beyond the open follower, so thick on either side (mm)."""
+"""Guide of the stem where no springs are: distance beyond the open follower, thickness on either side (mm)."""
 GAP = 0.4
 """Between head and seat when the valve is closed (mm)."""
 

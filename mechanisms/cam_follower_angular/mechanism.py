@@ -1,5 +1,5 @@
-"""A cam swings an arm: its flat shoe lies on the disc, and a spring at the end of the arm keeps it there.
-The place where they touch wanders to and fro along the shoe, and the tip draws the arc that the law asks for: a rise, a
+"""A cam swings an arm: its flat shoe lies on the disc, and a spring at the arm's end keeps it there.
+The point of contact wanders to and fro along the shoe, and the tip draws the arc that the law prescribes: a rise, a
 dwell and a return.
 """
 
@@ -17,7 +17,7 @@ VARIANTS = {
 
 @dataclass(frozen=True)
 class Params:
-    """Sizes (m), swing (degrees), angles of the cam over which it lifts, rests and lowers (rad), spring, rate (rad/s).
+    """Sizes (m), swing (degrees), angles of rise, dwell and return (rad), spring, rate (rad/s).
 
     ``follower`` is flat or roller.
     """
@@ -45,7 +45,10 @@ def lift_law(p: Params) -> Lift:
 
 
 def build(p: Params) -> Mechanism:
-    """The cam turns about the origin; the arm's pivot is right of it, and its axis runs from the pivot over the cam."""
+    """The cam turns about the origin.
+
+    The arm's pivot is right of it, and its axis runs from the pivot over the cam.
+    """
     m = Mechanism("cam_follower_angular")
     cam, arm = m.body("cam"), m.body("arm", p.mass, (p.tip / 2, 0.0), p.mass * p.tip**2 / 12)
     m.revolute("O", m.ground.at(0, 0), cam.origin)

@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and a scale in degrees behind the tip, on which one reads the swing."""
+"""The automatic parts, and a scale in degrees behind the tip, on which one reads the swing."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from shared.shapes.units import mm
 from shared.shapes.workpieces import prism
 
 SCALE = (9.0, 30.0)
-"""Where the scale begins beyond the tip's eye, and its width (mm)."""
+"""Start of the scale beyond the tip's eye, and its width (mm)."""
 BEYOND, STEP = 5, 2
 """Degrees beyond the swing, and from stroke to stroke."""
 POINTER = (2.0, 3.5)
-"""How near the arm comes to the scale, and half the arm's width (mm)."""
+"""Distance between the arm and the scale, and half the arm's width (mm)."""
 
 
 def parts(p: Params) -> Bodies:
@@ -50,15 +50,15 @@ def _scale(inner: float, outer: float, theta: list[float], low: float, high: flo
     """A sector with strokes, the zero of its angles on the x axis; every fifth stroke is long."""
     first, last = int(theta[0]) - BEYOND, int(theta[1]) + BEYOND + 1
 
-    def at(radius: float, angle: float) -> tuple[float, float]:
+    def point(radius: float, angle: float) -> tuple[float, float]:
         return radius * cos(radians(angle)), radius * sin(radians(angle))
 
-    edge = [at(inner, angle) for angle in range(first, last + 1)] + [
-        at(outer, angle) for angle in range(last, first - 1, -1)
+    edge = [point(inner, angle) for angle in range(first, last + 1)] + [
+        point(outer, angle) for angle in range(last, first - 1, -1)
     ]
     outline = cq.Wire.makePolygon([cq.Vector(x, y, 0.0) for x, y in edge], close=True)
     strokes = []
     for k, angle in enumerate(range(first + STEP, last, STEP)):
         long = 12.0 if k % 5 == 0 else 7.0
-        strokes.append(groove(at(inner + 3.0, angle), at(inner + 3.0 + long, angle), 0.9))
+        strokes.append(groove(point(inner + 3.0, angle), point(inner + 3.0 + long, angle), 0.9))
     return engraved(extruded(outline, high - low, low), strokes, high)

@@ -1,4 +1,4 @@
-"""A chain that hangs on one pin is flung up: all its links start at the same rate, and soon each turns its own way.
+"""A chain that hangs on one pin is flung up: all links start at one rate, then each turns its own way.
 The variants have three, ten and a hundred links; the hundred are released from nearly level and swing like a rope.
 """
 
@@ -17,7 +17,7 @@ VARIANTS = {
 
 @dataclass(frozen=True)
 class Params:
-    """Number of links, length (m) and mass (kg) of each, drag (N s/m) at each lower end, start and its rate.
+    """Number, length (m) and mass (kg) of the links, drag (N s/m) at each lower end, start and its rate.
 
     The chain starts straight, ``lean`` degrees from where it hangs, all links turning at ``rate`` (rad/s).
     """

@@ -1,6 +1,4 @@
-"""Parts of the four-bar, automatic but for two wishes: the rocker is above the coupler, which is marked B and C at its
-pins.
-"""
+"""Automatic parts of the four-bar, with the rocker above the coupler and marks B and C at its pins."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""A leg on a bicycle: crank, shank and thigh are a four-bar between bottom bracket and hip, at 60 turns a minute.
-The crank goes round and round, so the thigh must rock: watch how fast the knee turns back at the top and how gently
-at the bottom.
+"""A leg on a bicycle: crank, shank and thigh are a four-bar between bottom bracket and hip.
+The crank goes round at 60 turns a minute, so the thigh must rock: watch how fast the knee turns back at the top and how
+gently at the bottom.
 """
 
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The leg as a leg: wooden thigh and shank with its foot, a crank with a chainring; behind it the whole bicycle."""
+"""A wooden thigh and shank with its foot, a crank with a chainring, and the bicycle behind them."""
 
 from math import cos, radians, sin
 
@@ -14,7 +14,7 @@ PIN = 20.0
 WIDE, TALL = 3.9, 4.0
 """Thickness of the wheels, and of the frame before them, on which the saddle lies (mm)."""
 ROAD = (60.0, 14.0, 70.0)
-"""How far the road reaches beyond the wheels, under them, and out from the base (mm)."""
+"""Reach of the road beyond the wheels, under them, and out from the base (mm)."""
 
 
 def parts(p: Params) -> Bodies:

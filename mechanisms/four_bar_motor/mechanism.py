@@ -1,4 +1,4 @@
-"""A four-bar that an electric motor starts from rest: within two turns it runs as fast as it ever will.
+"""A four-bar that an electric motor starts from rest and brings to full speed within two turns.
 Then its speed still rises and falls with every turn, because links and weights take and give energy, and the motor
 follows its torque-speed curve: it pulls the more the slower it turns.
 """
@@ -14,7 +14,7 @@ SPECTRA = ("crank", "motor", "shaking force")
 
 @dataclass(frozen=True)
 class Params:
-    """Lengths (m), masses of uniform links (kg), the motor on its pinion, a load on the rocker (N m s/rad)."""
+    """Lengths (m), masses of uniform links (kg), motor and pinion, a load on the rocker (N m s/rad)."""
 
     ground: float = 0.120
     crank: float = 0.040
@@ -33,7 +33,10 @@ class Params:
 
     @property
     def torque_speed(self) -> Curve:
-        """Curve of the motor. It turns clockwise for the crank to turn the other way: speed and torque are negative."""
+        """Curve of the motor.
+
+        It turns clockwise for the crank to turn the other way: speed and torque are negative.
+        """
         return curve([-speed for speed in self.speeds[::-1]], [-torque for torque in self.torques[::-1]])
 
 

@@ -1,4 +1,4 @@
-"""Geneva drive: the crank turns steadily; its pin moves the wheel on by one slot each turn and locks it in between."""
+"""A Geneva drive: the crank's pin moves the wheel on by one slot each turn and locks it in between."""
 
 from dataclasses import dataclass
 from math import pi, sin

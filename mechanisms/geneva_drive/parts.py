@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and what is indexed: a table with a piece for each slot, and a mark."""
+"""The automatic parts, and what is indexed: a table with a piece for each slot, and a mark."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A sun and a planet that attract each other: both go round their common centre of mass on ellipses of one shape.
+"""A sun and a planet that attract each other move on similar ellipses about their centre of mass.
 In the variant three equal bodies chase each other for ever along one figure of eight.
 """
 
@@ -20,7 +20,7 @@ EIGHT_PLACE, EIGHT_SPEED, EIGHT_PERIOD = (0.97000436, -0.24308753), (-0.93240737
 
 @dataclass(frozen=True)
 class Params:
-    """Masses (kg), half the long axis of the ellipse that one runs about the other (m), and its period (s)."""
+    """Masses (kg), semi-major axis of the relative ellipse (m) and its period (s)."""
 
     masses: tuple[float, ...] = (0.50, 0.05)
     axis: float = 0.15
@@ -30,7 +30,7 @@ class Params:
 
 
 def build(p: Params) -> Mechanism:
-    """Bodies start where they are farthest from each other, their common centre of mass at rest in the origin."""
+    """Start the bodies farthest apart, with their centre of mass at rest in the origin."""
     m = Mechanism("gravitation", gravity=None)
     names = ("sun", "planet") if len(p.masses) == 2 else tuple(f"body{k + 1}" for k in range(len(p.masses)))
     bodies = [m.body(name, mass, inertia=1e-4) for name, mass in zip(names, p.masses, strict=True)]

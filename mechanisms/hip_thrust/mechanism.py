@@ -23,7 +23,7 @@ VARIANTS = {
 
 @dataclass(frozen=True)
 class Params:
-    """Height (m) and mass (kg) of the lifter; the barbell (kg); the bench (m); how long the way up takes (s)."""
+    """Height (m) and mass (kg) of the lifter, the barbell (kg), the bench (m), time of the lift (s)."""
 
     exercise: str = "hip_thrust"
     height: float = 1.78

@@ -1,4 +1,4 @@
-"""The lifter as a jointed mannequin of wood, a bench, and a barbell without its near plates, so that one sees in."""
+"""The lifter as a jointed wooden mannequin, a bench, and a barbell without its near plates."""
 
 from dataclasses import replace
 

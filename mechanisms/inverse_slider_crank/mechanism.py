@@ -1,5 +1,5 @@
-"""A slider-crank asked backwards: the slider shall rest, move out and come back softly; which torque at the crank?
-The slider follows its wished law; what is computed is the torque of a motor on the crank that makes it do so.
+"""A slider-crank in reverse: the slider's motion is given, the torque at the crank is computed.
+The slider rests, moves out and comes back softly; a motor on the crank makes it do so.
 """
 
 from dataclasses import dataclass

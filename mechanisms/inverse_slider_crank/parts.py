@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and what asks for a soft motion: a cup of tea on a tray."""
+"""The automatic parts, and what asks for a soft motion: a cup of tea on a tray."""
 
 from mechanisms.automatic import automatic
 from mechanisms.inverse_slider_crank.mechanism import Params, build

@@ -1,4 +1,4 @@
-"""One leg of Theo Jansen's beach animals, with his eleven holy numbers: a crank, two triangles and four bars.
+"""One leg of Theo Jansen's beach animals, with his eleven holy numbers: crank, triangles and bars.
 The foot goes back along a nearly flat line, as on sand, then lifts and swings forward in an arc: rotation walks.
 """
 

@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and sand under the foot, which leaves it while it swings forward."""
+"""The automatic parts, and sand under the foot, which leaves it while it swings forward."""
 
 from mechanisms.automatic import automatic
 from mechanisms.jansen_leg.mechanism import Params, build

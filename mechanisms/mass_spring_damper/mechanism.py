@@ -1,4 +1,4 @@
-"""A block on a rail between a spring and a damper: released 45 mm from rest, it swings to and fro and comes to rest.
+"""A block between a spring and a damper, released 45 mm from rest, swings and comes to rest.
 The variants have no damper, or just so much that it no longer swings past, or a hand that shakes it in its own rhythm
 until the swing is five times as wide as the push.
 """
@@ -19,7 +19,7 @@ VARIANTS = {
 
 @dataclass(frozen=True)
 class Params:
-    """Mass (kg), stiffness (N/m), damping (N s/m), start (m from rest), amplitude of the force (N), places (m)."""
+    """Mass (kg), spring (N/m), damper (N s/m), start (m from rest), force amplitude (N), positions (m)."""
 
     mass: float = 1.0
     stiffness: float = 400.0

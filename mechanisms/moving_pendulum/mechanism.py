@@ -1,4 +1,4 @@
-"""A pendulum on a cart that is free on its rail: the cart darts to and fro against the swing of the bob.
+"""A pendulum on a cart that is free on its rail: the cart moves against the swing of the bob.
 Nothing pushes them sideways, so their common centre of mass only goes up and down. In the variant the cart is driven
 instead, and the bob is thrown over the top again and again.
 """
@@ -18,7 +18,7 @@ VARIANTS = {
 
 @dataclass(frozen=True)
 class Params:
-    """Length (m), masses of cart and bob (kg), start from where it hangs (degrees), drag of the bob (N s/m).
+    """Length (m), masses of cart and bob (kg), start (degrees from hanging), drag of the bob (N s/m).
 
     With a ``stroke`` (m) the cart is driven as stroke * sin(rate * t), rate in rad/s.
     """

@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, a sheet of paper under both hearts, and a pen at the far end."""
+"""The automatic parts, a sheet of paper under both hearts, and a pen at the far end."""
 
 from __future__ import annotations
 

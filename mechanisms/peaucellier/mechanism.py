@@ -1,4 +1,4 @@
-"""Peaucellier's straight line of 1864: seven bars, no slide, and the point at the far end runs exactly straight.
+"""Peaucellier's straight line of 1864: seven bars, no slide, and an end that runs exactly straight.
 Two long bars and a rhombus invert the circle of the crank's pin, which goes through the fixed pivot, into a line.
 """
 

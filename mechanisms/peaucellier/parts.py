@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and a sheet of paper on which P rules its straight line."""
+"""The automatic parts, and a sheet of paper on which P rules its straight line."""
 
 from mechanisms.automatic import automatic
 from mechanisms.peaucellier.mechanism import Params, build

@@ -17,7 +17,7 @@ VARIANTS = {
 
 @dataclass(frozen=True)
 class Params:
-    """Length (m) and mass (kg) of a uniform rod, damping (N m s/rad), start from the vertical (degrees), weight."""
+    """Length (m) and mass (kg) of a uniform rod, damping (N m s/rad), start (degrees), weight (m/s^2)."""
 
     length: float = 0.300
     mass: float = 1.0

@@ -1,6 +1,6 @@
-"""A planetary gear: the sun drives three planets that roll in the fixed ring and take the carrier with them at a
-quarter of the sun's speed. With another member held it is another gear: a carrier that stands still turns the ring
-backwards, a sun that stands still lets the ring drive the carrier.
+"""A planetary gear: the sun drives three planets that roll in the fixed ring and turn the carrier.
+The carrier turns at a quarter of the sun's speed; with another member held it is another gear: a carrier that stands
+still turns the ring backwards, a sun that stands still lets the ring drive the carrier.
 """
 
 from dataclasses import dataclass

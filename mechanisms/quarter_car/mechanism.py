@@ -21,7 +21,7 @@ VARIANTS = {
 
 @dataclass(frozen=True)
 class Params:
-    """Masses (kg), stiffness (N/m) and damping (N s/m) of strut and tyre, sizes (m), speed (m/s), weight (m/s^2)."""
+    """Masses (kg), strut and tyre (N/m, N s/m), sizes (m), speed (m/s), weight (m/s^2)."""
 
     sprung: float = 250.0
     unsprung: float = 25.0

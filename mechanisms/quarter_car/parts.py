@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and round the body's plate the front of a car with its driver (mm)."""
+"""The automatic parts, and round the body's plate the front of a car with its driver (mm)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from shared.shapes.units import mm
 ARCH = 1.22
 """Radius of the arch over the wheel, in the wheel's."""
 SIDE = ((0.62, -0.44), (0.68, -0.36), (0.68, -0.12), (0.55, 0.02), (0.02, 0.14), (-0.26, 0.38), (-0.66, 0.38))
-"""From the bumper over the bonnet to the roof (m), from the middle of the body."""
+"""Points from the bumper over the bonnet to the roof (m), from the middle of the body."""
 SILL, BACK = -0.44, -0.66
 WINDOW = ((-0.16, 0.16), (-0.30, 0.32), (-0.59, 0.32), (-0.59, 0.16))
 DRIVER = ((-0.41, 0.25, 0.105), (-0.46, 0.03, 0.17))

@@ -1,4 +1,4 @@
-"""The quick return of a shaping machine: a pin of the crank runs in the slot of a long arm, which pushes the ram.
+"""The quick return of a shaper: a crank's pin runs in the slot of a long arm, which pushes the ram.
 The crank turns evenly, yet the ram cuts slowly and comes back fast: the arm swings back while the crank passes the
 short arc near the arm's pivot.
 """

@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and what makes them a shaping machine: the ram's tool, and the work."""
+"""The automatic parts, and what makes them a shaping machine: the ram's tool, and the work."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from shared.shapes.solid import Solid
 from shared.shapes.units import mm
 
 NECK, HEAD = 0.045, 0.075
-"""From the ram's pin to the tool and to the end of the ram (m)."""
+"""Distance from the ram's pin to the tool and to the end of the ram (m)."""
 HALF = 0.009
 """Half the width of the ram (m)."""
 TOOL = 0.048
-"""How far the tool's edge is below the ram's line (m)."""
+"""Height of the ram's line over the tool's edge (m)."""
 CUT = 0.001
 """Between the edge and the work (m)."""
 WORK = (0.100, 0.195, 0.045)

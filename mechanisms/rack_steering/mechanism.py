@@ -1,4 +1,4 @@
-"""Rack-and-pinion steering: the pinion pushes the rack, two tie rods turn the front wheels about their kingpins.
+"""Rack-and-pinion steering: the rack moves two tie rods that turn the wheels about their kingpins.
 The inner wheel turns further than the outer one: at 32 degrees the outer is within 0.5 degrees of Ackermann's condition
 cot(outer) - cot(inner) = track / wheelbase, by which all wheels roll about one point.
 """
@@ -27,7 +27,10 @@ class Params:
 
 
 def build(p: Params) -> Mechanism:
-    """Seen from above, the car drives along y; markers of the knuckles are given in the world, wheels straight."""
+    """Seen from above, the car drives along y.
+
+    Markers of the knuckles are given in the world, wheels straight.
+    """
     m = Mechanism("rack_steering", gravity=None)
     pinion, rack = m.body("pinion"), m.body("rack")
     radius = p.module * p.teeth / 2

@@ -1,4 +1,4 @@
-"""The steering's automatic parts, and what makes it a car's: road wheels on stub axles, a steering wheel.
+"""The steering's automatic parts, road wheels on stub axles, and a steering wheel.
 
 Lengths in this file are reference millimetres (rmm, sizes.py), scaled when all is made. A road wheel is one with its
 knuckle: how it rolls is not part of the motion.
@@ -19,7 +19,7 @@ LAYER = 4
 TYRE, RIM, HALF = 46.0, 31.0, 16.0
 """Radii of a tyre and its rim, and half of their width."""
 OUT = 58.0
-"""From the kingpin to the middle of the wheel."""
+"""Distance from the kingpin to the middle of the wheel."""
 AXLE = 5.0
 """Radius of a stub axle."""
 STEERING, GRIP = 46.0, 4.0

@@ -1,4 +1,4 @@
-"""A ball thrown between two walls: at each wall it is reflected as light is by a mirror, and from the floor it bounces.
+"""A ball between two walls is reflected by them as light is by a mirror, and bounces on the floor.
 Walls and floor give back all of its speed, so it comes back to where it was thrown and draws one closed figure; the
 variants lose a part at each impact, or have soft walls that the ball presses in.
 """
@@ -18,7 +18,7 @@ VARIANTS = {
 
 @dataclass(frozen=True)
 class Params:
-    """Sizes (m) and mass (kg) of the ball, where it starts (m from the left wall), restitution, weight (m/s^2).
+    """Sizes (m), mass (kg) of the ball, its start (m from the left wall), restitution, weight (m/s^2).
 
     ``rhythm``: so many bounces on the floor in so many journeys from wall to wall and back, until the figure closes.
     With a ``stiffness`` (N/m^1.5, Hertz) walls and floor yield instead; 0 is rigid.

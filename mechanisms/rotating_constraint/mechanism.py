@@ -1,6 +1,6 @@
-"""A block on an arm that turns at constant rate: it can only slide along the arm, and a spring holds it to the pivot.
-Seen from the arm it swings to and fro about a place further out than its spring's rest, more slowly the faster the arm
-turns; without the spring (a variant) it flies out.
+"""A block slides on an arm that turns at constant rate, and a spring holds it to the pivot.
+Seen from the arm it swings about a point further out than its spring's rest, more slowly the faster the arm turns;
+without the spring (a variant) it flies out.
 """
 
 from dataclasses import dataclass

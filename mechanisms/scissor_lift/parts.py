@@ -1,4 +1,7 @@
-"""The platform is a table, level over both hinges and as wide as the lift is at its lowest. It lifts a crate."""
+"""The platform is a table, level over both hinges and as wide as the lift is at its lowest.
+
+It lifts a crate.
+"""
 
 from mechanisms.automatic import automatic
 from mechanisms.scissor_lift.mechanism import Params, build

@@ -1,4 +1,4 @@
-"""A scotch yoke: the crank's pin runs in a slot across the yoke, so the yoke moves exactly as a cosine.
+"""A scotch yoke: the crank's pin runs in a slot across the yoke, which moves exactly as a cosine.
 With a spring against the yoke that is in tune with the crank (variant spring), the motor need not shake the yoke any
 more: the spring does. Without a motor (free) a harder spring speeds the crank up twice a turn and slows it down again.
 """
@@ -16,7 +16,10 @@ VARIANTS = {
 
 @dataclass(frozen=True)
 class Params:
-    """Lengths (m), mass of the yoke (kg) and speed (rad/s); ``tuned`` adds a spring of tune * mass * speed^2."""
+    """Lengths (m), mass of the yoke (kg) and speed (rad/s).
+
+    ``tuned`` adds a spring of tune * mass * speed^2.
+    """
 
     crank: float = 0.040
     guide: float = 0.140  # from the slot to the block in the guide

@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and a pump: a piston on the yoke, its cylinder cut open.
+"""The automatic parts, and a pump: a piston on the yoke, its cylinder cut open.
 
 With a spring behind the yoke (variants) there is no room for it.
 """

@@ -1,4 +1,4 @@
-"""A single cylinder of four strokes: it pushes once in two turns, and a flywheel carries it through the other three.
+"""A four-stroke single cylinder: it pushes once in two turns, a flywheel carries it through the rest.
 A counterweight that takes half of the piston leaves a force of constant size that turns against the shaft.
 """
 

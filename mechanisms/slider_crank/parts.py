@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and a press: a punch on the slider, a blank before its die."""
+"""The automatic parts, and a press: a punch on the slider, a blank before its die."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far the punch of the press strays at the end of its stroke, with bars cut to class m and pins H7/g6."""
+"""Stray of the press's punch at the end of its stroke, with bars cut to class m and pins H7/g6."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mechanisms.slider_crank.mechanism import Params
 PIN = 0.008
 """Diameter of the pins (m)."""
 ROOM = 0.3e-3
-"""By which the end of the stroke may be off (m): the punch passes the blank, and must not touch the die."""
+"""Error of the stroke's end that is allowed (m): the punch passes the blank, and must not touch the die."""
 
 
 def tolerances(p: Params) -> dict[str, dict[str, Any]]:

@@ -11,6 +11,7 @@ from mechanisms.stages.loading.inputs import Inputs, observed, sources_state
 from mechanisms.stages.parts.stage import current_parts
 from mechanisms.stages.solve import solving
 from mechanisms.stages.solve.skeleton_file import body_colours, main_material
+from shared.contract import Parts
 from shared.stage import console
 from shared.stage.errors import UserError, did_you_mean
 from shared.stage.files import sources_hash
@@ -19,18 +20,13 @@ from shared.stage.stages import Stage, key_of, versions
 
 if TYPE_CHECKING:
     from mbsd import Solution
-    from shared.contract import Parts
 
 
 QUANTITIES = ("velocities", "accelerations", "forces", "reactions", "energy")
 VIEWS = (*QUANTITIES, "skeleton", "each")
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite", "matplotlib", "pillow", "imageio-ffmpeg")
 SUFFIXES = (".mp4", ".gif")
-_STAGE = (
-    "animate",
-    "loading/loading",
-    *(f"solve/{name}" for name in ("solving", "masses", "skeleton_file")),
-)
+_STAGE = ("animate", "loading/loading", *(f"solve/{name}" for name in ("solving", "masses", "skeleton_file")))
 SOURCES = [ROOT / "mechanisms" / "stages" / f"{name}.py" for name in _STAGE]
 
 
@@ -52,8 +48,9 @@ def run(name: str, view: str = "") -> None:
 
 
 def films_of(view: str) -> list[str]:
-    """Return the views of the films to make: ``""`` is all quantities side by side. Raises UserError for unknown
-    words.
+    """Return the views of the films to make: ``""`` is all quantities side by side.
+
+    Raises UserError for unknown words.
     """
     words = [word.strip() for word in view.split(",") if word.strip()]
     for word in words:
@@ -70,7 +67,10 @@ def films_of(view: str) -> list[str]:
 
 
 def solve(name: str, parts: Parts | None) -> Solution:
-    """Return the motion; says which masses are those of the parts, and which are estimated. Raises UserError."""
+    """Return the motion; says which masses are those of the parts, and which are estimated.
+
+    Raises UserError.
+    """
     from mechanisms.stages.solve.masses import give_masses_aloud
 
     m, module, p = solving.model_of(name)
@@ -89,7 +89,10 @@ def _fresh(out: Out, parts: Parts | None, words: str) -> bool:
 
 
 def _key(parts: Parts | None, inputs: Inputs) -> str:
-    """Return the hash of all that a film follows from; ``inputs``: what mechanism.py is made of, and what it reads."""
+    """Return the hash of all that a film follows from.
+
+    ``inputs``: what mechanism.py is made of, and what it reads.
+    """
     masses = parts and {body: (solids.mass, main_material(solids)) for body, solids in parts.bodies.items()}
     sources = sources_hash(*SOURCES), sources_state("mbsd"), sources_state("mbsd/drawing")
     return key_of(*sources, masses, versions(*PACKAGES), inputs.digest())

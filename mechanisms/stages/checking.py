@@ -12,7 +12,10 @@ from shared.stage.paths import known_name
 
 
 def run(name: str, as_json: bool = False) -> int:
-    """Build the mechanism and look at it; 1 where something looks odd, notes apart. Raises UserError if it fails."""
+    """Build the mechanism and look at it; 1 where something looks odd, notes apart.
+
+    Raises UserError if it fails.
+    """
     name = known_name(name)
     module, given = loading.load(name, "mechanism"), loading.params(name)
     with loading.author_code(name):

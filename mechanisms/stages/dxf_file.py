@@ -1,4 +1,4 @@
-"""DXF documents whose bytes follow from what is drawn alone, on layers with names that the format allows.
+"""DXF documents whose bytes follow from the drawing alone, on layers with names that DXF allows.
 
 ezdxf writes the time, two random marks, and the classes of entities in the order of a set, which differs from process
 to process. Source of the rules for names: AutoCAD DXF reference, symbol table entries.
@@ -44,14 +44,17 @@ def text_of(document: Any) -> str:
 
 
 class Layers:
-    """Layers of a document by the names that its author knows; each has one of its own, which the format allows."""
+    """Layers of a document by the names that its author knows.
+
+    Each has one of its own, which the format allows.
+    """
 
     def __init__(self, document: Any) -> None:
         self._document = document
         self._names: dict[tuple[str, str], str] = {}
 
     def named(self, name: str, kind: str = "") -> str:
-        """Return the layer for ``name`` among those of one ``kind``; it is added to the document if it is not there.
+        """Return the layer for ``name`` among those of one ``kind``, added to the document if missing.
 
         Forbidden characters become underscores. Where another layer has that name, as DXF compares them (without
         regard to case), a number follows.

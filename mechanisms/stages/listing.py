@@ -1,4 +1,4 @@
-"""``make list``: every mechanism, what it is, what is made of it, and what of that is of an older version."""
+"""``make list``: every mechanism, what it is, what is made of it, and what of that is outdated."""
 
 from __future__ import annotations
 
@@ -12,15 +12,7 @@ from shared.contract.quantity import counted
 from shared.stage.console import warn
 from shared.stage.errors import UserError
 from shared.stage.memory import remembered
-from shared.stage.paths import (
-    Out,
-    all_mechanisms,
-    mechanism_file,
-    mechanism_names,
-    out_root,
-    unfit_names,
-    variants_in,
-)
+from shared.stage.paths import Out, all_mechanisms, mechanism_file, mechanism_names, out_root, unfit_names, variants_in
 from shared.stage.stages import outdated_by, results_of
 
 
@@ -33,10 +25,10 @@ class _Solved(msgspec.Struct):
 
 
 def run(names: bool = False, as_json: bool = False) -> None:
-    """Print a line for each mechanism: name, degrees of freedom (once solved), first line of its docstring, files.
+    """Print a line for each mechanism: name, degrees of freedom, first line of its docstring, files.
 
-    Results that are older than the files or results that they were made of are named apart. No author's code is run, so
-    of parts it is not known.
+    The freedom is known once it is solved, the title is the first line of its docstring. Results that are older than
+    the files or results that they were made of are named apart. No author's code is run, so of parts it is not known.
 
     ``names``: names alone, of variants as well; ``as_json``: all of it for other programs. Raises UserError if there
     are none, but for other programs.
@@ -58,7 +50,7 @@ def run(names: bool = False, as_json: bool = False) -> None:
 
 
 def tell_current(names: Iterable[str]) -> None:
-    """Print the names whose motion, parts and shot follow from the author's files as they are, a line each.
+    """Print a line with the name of each mechanism whose motion, parts and shot are up to date.
 
     mechanism.py is run for its parameters and may do anything, so this is asked in a process of its own.
     """

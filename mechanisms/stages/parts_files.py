@@ -1,4 +1,4 @@
-"""Makes the bytes of a solid's files: equal solids give equal bytes, whenever and wherever they are made."""
+"""Makes the bytes of a solid's files: equal solids give equal bytes, whenever and wherever."""
 
 from __future__ import annotations
 
@@ -60,7 +60,9 @@ def _normals(corners: np.ndarray) -> np.ndarray:
 
 
 def step_bytes(solid: Any, name: str) -> bytes:
-    """STEP of a ``cadquery.Solid``, in mm. Its product is called ``name``; when it was written is left out.
+    """STEP of a ``cadquery.Solid``, in mm. Its product is called ``name``.
+
+    When it was written is left out.
 
     Raises UserError if the kernel cannot write its file.
     """

@@ -75,7 +75,10 @@ def _without_file(out: Out) -> None:
 
 
 def _key(names: Names | None, inputs: Inputs) -> str:
-    """Return the hash of all that shot.json follows from; ``inputs``: what shot.py is made of, and what it reads."""
+    """Return the hash of all that shot.json follows from.
+
+    ``inputs``: what shot.py is made of, and what it reads.
+    """
     return key_of(sources_hash(*SOURCES), names and names.listed(), inputs.digest(), *_look())
 
 

@@ -28,8 +28,9 @@ FORM = "name=from:to:count or name=value,value, with ';' between names, as in cr
 
 
 def grid_of(name: str, words: str, p: Any) -> dict[str, list[Any]]:
-    """Return values of fields of ``p`` (a Params) by name. Raises UserError for what is no grid, and for unknown
-    fields.
+    """Return values of fields of ``p`` (a Params) by name.
+
+    Raises UserError for what is no grid, and for unknown fields.
     """
     fields = [field.name for field in dataclasses.fields(p) if field.init]
     grid: dict[str, list[Any]] = {}

@@ -12,6 +12,7 @@ from mechanisms.stages.loading.inputs import Inputs, observed, sources_state
 from mechanisms.stages.loading.loading import refuse_arguments
 from mechanisms.stages.parts.stage import current_parts
 from mechanisms.stages.solve import solving
+from shared.contract import Parts
 from shared.stage import console
 from shared.stage.errors import UserError, did_you_mean
 from shared.stage.files import sources_hash, write_bytes
@@ -20,7 +21,6 @@ from shared.stage.stages import Stage, key_of, versions
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Tolerances
-    from shared.contract import Parts
 
 
 # Requests of tolerances.py: by the name of a result, the arguments of :func:`mbsd.tolerances`.
@@ -37,7 +37,10 @@ FORM = 'def tolerances(p): return {"far_end": {"sizes": {"crank": 5e-5}, "result
 
 
 def wished_results(name: str, m: Mechanism, p: Any) -> dict[str, Callable[..., Tolerances]]:
-    """Return by result a function that finds it. Raises UserError for an invalid request, before it computes."""
+    """Return by result a function that finds it.
+
+    Raises UserError for an invalid request, before it computes.
+    """
     module = loading.load(name, "tolerances")
     file = shown_file(name, "tolerances")
     refuse_arguments(file, module.tolerances, p)
@@ -185,7 +188,10 @@ def _stage(out: Out) -> Stage:
 
 
 def _key(parts: Parts | None, inputs: Inputs) -> str:
-    """Return the hash of all that follows; ``inputs``: what the author's files are made of, and what they read."""
+    """Return the hash of all that follows.
+
+    ``inputs``: what the author's files are made of, and what they read.
+    """
     masses = parts and {body: solids.mass for body, solids in parts.bodies.items()}
     sources = sources_hash(*SOURCES), sources_state("mbsd"), sources_state("mbsd/drawing")
     return key_of(*sources, masses, versions(*PACKAGES), inputs.digest())

@@ -1,5 +1,5 @@
-"""A table on two equal swings: however far it swings out, it stays level, since the swings are a parallelogram.
-So table and swings move as one pendulum of the swings' length.
+"""A table on two equal swings: they are a parallelogram, so it stays level however far it swings.
+Table and swings move as one pendulum of the swings' length.
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ VARIANTS = {"undamped": {"damping": 0.0, "start": 30.0}}
 
 @dataclass(frozen=True)
 class Params:
-    """Length of the swings and of the table (m), mass at each end of the table (kg), drag there (N s/m), start."""
+    """Lengths of swings and table (m), mass at each end of the table (kg), drag there (N s/m), start."""
 
     swing: float = 0.16
     table: float = 0.24
@@ -24,7 +24,10 @@ class Params:
 
 
 def build(p: Params) -> Mechanism:
-    """A mass is at the lower end of each swing and at the right end of the table; the swings hang at -90 degrees."""
+    """A mass is at the lower end of each swing and at the right end of the table.
+
+    The swings hang at -90 degrees.
+    """
     m = Mechanism("swing_table", gravity=(0.0, -p.gravity))
     left, right, table = (
         m.bar(name, length, p.mass, com=(length, 0), inertia=0.0)

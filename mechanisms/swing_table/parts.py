@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and a cup of tea on the table, which stays level."""
+"""The automatic parts, and a cup of tea on the table, which stays level."""
 
 from mechanisms.automatic import automatic
 from mechanisms.swing_table.mechanism import Params, build

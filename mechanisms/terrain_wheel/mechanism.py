@@ -1,4 +1,4 @@
-"""A wheel released on a slope rolls through two dales, over the hill between them, and comes back to where it was.
+"""A wheel released on a slope rolls through two dales, over the hill between them, and comes back.
 Nothing is lost as long as it rolls; on a terrain of planks (a variant) every corner takes a part of its speed, and
 dropped from above (another one) it bounces until it rolls.
 """

@@ -1,4 +1,4 @@
-"""A toggle clamp: the handle brings its pin and the link into one line, and the arm presses on the workpiece.
+"""A toggle clamp: the handle brings its pin and the link into line, and the arm presses on the work.
 Shortly past that line the clamp holds by itself: the workpiece pushes with 100 N, yet the handle needs no hand, and
 opens only when it is lifted.
 """

@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, and what is clamped: a block on a table, under a foot of rubber."""
+"""The automatic parts, and what is clamped: a block on a table, under a foot of rubber."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The trammel of Archimedes: two shuttles in grooves that cross, and a rod on both of them whose end draws an ellipse.
+"""The trammel of Archimedes: a rod on two shuttles in crossed grooves, whose end draws an ellipse.
 Every point of the rod draws one: half of its axes are the distances of the point from the two pins. The point midway
 between the pins draws a circle.
 """
@@ -22,7 +22,10 @@ class Params:
 
 
 def build(p: Params) -> Mechanism:
-    """The first groove lies along x. The rod turns evenly; its pen is beyond the pin of the second shuttle."""
+    """The first groove lies along x.
+
+    The rod turns evenly; its pen is beyond the pin of the second shuttle.
+    """
     m = Mechanism("trammel", gravity=None)
     first, second = m.body("first"), m.body("second")
     rod = m.bar("rod", p.pins + p.beyond)

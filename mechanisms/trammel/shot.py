@@ -1,4 +1,7 @@
-"""How the trammel is filmed: from high up, so that grooves and ellipse read; the rod is coloured, as what is turned."""
+"""How the trammel is filmed: from high up, so that grooves and ellipse read.
+
+The rod is coloured, as what is turned.
+"""
 
 from shared.shot import Camera, Shot
 

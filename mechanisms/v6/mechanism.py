@@ -1,4 +1,4 @@
-"""A V6 of 60 degrees with a pin for each rod: the two pins of a throw are 60 degrees apart, so that it fires every 120.
+"""A 60 degree V6 with a pin for each rod: pins of a throw are 60 degrees apart, it fires every 120.
 No force of the first or second order is left, but a couple that rocks the block.
 """
 

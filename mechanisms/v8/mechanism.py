@@ -1,6 +1,6 @@
-"""The V8 with a cross crank: two rods on a pin and 90 degrees between the banks leave nothing that turns against the
-shaft, so counterweights balance it. At other angles a couple is left that they cannot take, and the flat crank shakes
-twice a turn: `make compare-v8` shows all of them beside each other.
+"""The V8 with a cross crank: two rods on a pin and 90 degrees between the banks.
+Nothing is left that turns against the shaft, so counterweights balance it; at other angles a couple is left that they
+cannot take, and the flat crank shakes twice a turn: `mbsd compare v8` shows all of them beside each other.
 """
 
 from dataclasses import dataclass

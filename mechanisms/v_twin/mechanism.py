@@ -1,5 +1,5 @@
-"""A V-twin with both rods on one pin: at 90 degrees its counterweights take all of the first order, at 45 they cannot,
-and it fires after 405 and 315 degrees, which is how it sounds.
+"""A V-twin with both rods on one pin: at 90 degrees its counterweights take all of the first order.
+At 45 degrees they cannot, and it fires after 405 and 315 degrees, which is how it sounds.
 """
 
 from dataclasses import dataclass

@@ -54,7 +54,10 @@ class Params:
 
 
 def build(p: Params) -> Mechanism:
-    """Without weight, which does not shake. The rod is as two masses on its pins: inertia mass * l/3 * 2l/3."""
+    """Without weight, which does not shake.
+
+    The rod is as two masses on its pins: inertia mass * l/3 * 2l/3.
+    """
     m = Mechanism("vibration_slider_crank", gravity=None)
     tail = p.arm if p.counterweight else 0.0
     mass = p.crank_mass + p.counter_mass
@@ -75,7 +78,7 @@ def build(p: Params) -> Mechanism:
 
 
 def _balancer(m: Mechanism, p: Params, tail: float) -> None:
-    """A shaft beside the crank's that an equal gear turns backwards; its weight starts opposite to the crank pin."""
+    """Add a shaft that an equal gear turns backwards; its weight starts opposite to the crank pin."""
     mass = p.wheel_mass + p.balancer_mass
     centre = p.balancer_mass * p.arm / mass
     radius = p.teeth * p.module / 2

@@ -1,6 +1,6 @@
-"""The two wipers of a windscreen: one motor turns on, a rod rocks the first wiper, and a bar takes the second along.
-The four-bar of motor, rod and lever makes the swing; the bar between the levers is a parallelogram, so both blades
-stay parallel.
+"""The two wipers of a windscreen: a motor's rod rocks the first wiper, a bar takes the second along.
+The four-bar of motor, rod and lever makes the swing; the bar between the levers is a parallelogram, so both blades stay
+parallel.
 """
 
 from dataclasses import dataclass

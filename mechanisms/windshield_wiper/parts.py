@@ -1,4 +1,4 @@
-"""The parts that the model and its motion give, a windscreen behind them, and blades of rubber on the wipers."""
+"""The automatic parts, a windscreen behind them, and blades of rubber on the wipers."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ GLASS = (5.0, 40.0)
 CORNER = 46.0
 """Radius of its corners (mm)."""
 BLADE = (0.30, 0.99, 3.0)
-"""Where a blade begins and ends, in the length of its wiper; half its width (mm)."""
+"""Start and end of a blade, in the length of its wiper; half its width (mm)."""
 GAP = 0.5
 """Between blade and glass (mm)."""
 

@@ -49,8 +49,9 @@ class Arrows:
         ]
 
     def legend(self, width: float) -> list[LegendRow]:
-        """Return a row for each quantity, and for weights, in a picture that is ``width`` (m) wide where the machine
-        is.
+        """Return a row for each quantity, and for weights.
+
+        The picture is ``width`` (m) wide where the machine is.
         """
         rows = []
         for quantity, unit in dict.fromkeys((vector.row, vector.unit) for vector in self.vectors):
@@ -75,7 +76,10 @@ class Arrows:
         return rows
 
     def ends_at(self, t: float, heights: Sequence[float]) -> list[tuple[Point, Point]]:
-        """Return the tail and tip of each at time ``t``, ``heights`` (m) over the base; equal where it is left out."""
+        """Return the tail and tip of each at time ``t``; equal where it is left out.
+
+        They lie ``heights`` (m) over the base.
+        """
         out = []
         for vector, z in zip(self.vectors, heights, strict=True):
             x, y, u, v = (float(k) for k in at_time(self.time, np.hstack([vector.place, vector.value]), t))
@@ -87,8 +91,9 @@ class Arrows:
         return out
 
     def tips(self, heights: Sequence[float], way: Array | None = None) -> list[Array]:
-        """Return where each tip is (n, 3) over the whole motion (m), wherever there is one, as seen from a ``way`` (T,
-        3).
+        """Return where each tip (n, 3; m) is over the whole motion, wherever there is one.
+
+        They are as seen from a ``way`` (T, 3).
         """
         out = []
         for vector, z in zip(self.vectors, heights, strict=True):
@@ -121,7 +126,10 @@ STOUT = 1.3
 
 
 class Arcs:
-    """The curved arrows of one film, ``size`` (m) being that of its swept motion; ``least`` (N m) is rounding."""
+    """The curved arrows of one film.
+
+    ``size`` (m) is that of its swept motion; ``least`` (N m) is rounding.
+    """
 
     def __init__(self, time: Array, torques: Sequence[Torque], size: float, least: float = 0.0) -> None:
         self.time, self.size = time, size
@@ -144,7 +152,7 @@ class Arcs:
         ]
 
     def legend(self) -> list[LegendRow]:
-        """Return a row for each quantity, with an arc that reaches as far as that torque's does in the picture."""
+        """Return a row for each quantity, with an arc as long as that torque's in the picture."""
         scale = self.scale
         if scale is None:
             return []
@@ -159,8 +167,9 @@ class Arcs:
         ]
 
     def sweeps_at(self, t: float, heights: Sequence[float]) -> list[tuple[Point, float]]:
-        """Return the centre and sweep (rad, positive counter-clockwise) of each at time ``t``, ``heights`` (m) over the
-        base.
+        """Return the centre and sweep (rad, counter-clockwise) of each at time ``t``.
+
+        They lie ``heights`` (m) over the base.
         """
         out = []
         for torque, z in zip(self.torques, heights, strict=True):
@@ -213,8 +222,9 @@ def title(motion: Motion, shot: Shot) -> str:
 
 
 def rate(clock: Clock, shot: Shot) -> str:
-    """Return how fast the film goes: with a title, and always where a motion that does not repeat is not in real
-    time.
+    """Return the words on the film's rate, or none.
+
+    They stand with a title, and always where a motion that does not repeat is not in real time.
     """
     real = abs(clock.rate - 1) < 0.02
     if real:
@@ -250,7 +260,7 @@ def number(motion: Motion, shot: Shot) -> Callable[[float], str]:
 
 
 def _shown_effort(motion: Motion) -> str:
-    """Return the first of the drivers that give something; of those that act in their place; of the traced points."""
+    """Return the first driver with an effort, else of what acts in its place, else of the traced points."""
     drivers = [name for name, driver in motion.drivers.items() if any(driver.effort)]
     acting = [
         name

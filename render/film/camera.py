@@ -1,4 +1,4 @@
-"""The camera of a film: it stands where the machine fills the picture, swings about its middle, or goes along."""
+"""The camera of a film: it stands where the machine fills the picture, swings, or goes along."""
 
 from __future__ import annotations
 
@@ -27,8 +27,9 @@ and from farther aside what stands is narrower."""
 
 
 def angles(shot: Camera, mount: Mount, aspect: float = ASPECT) -> tuple[float, float]:
-    """Return the azimuth and elevation (rad) of the camera; what the shot does not say follows from how the machine
-    stands, and from the ``aspect`` of the picture.
+    """Return the azimuth and elevation (rad) of the camera.
+
+    What the shot does not specify follows from how the machine stands, and from the ``aspect`` of the picture.
     """
     lies = mount.kind == "desk"
     part = min(max((ASPECT - aspect) / (ASPECT - TALL), 0.0), 1.0)
@@ -43,8 +44,10 @@ class Subject:
     """The subject of a film, in points (n, 3) of the world (m)."""
 
     def __init__(self, machine: Array, around: Array, drawn: Array, sharp: Array, way: Array | None = None) -> None:
-        """All of the ``machine`` over the motion, what stands ``around`` it, arrows that are ``drawn`` about it, and
-        what is ``sharp``. Where it is followed, ``way`` (frames, 3) is where it is, and points are as seen from there.
+        """Keep the points of all of the ``machine``, and of what is ``around`` it, ``drawn`` and ``sharp``.
+
+        They hold over the whole motion. Where the machine is followed, ``way`` (frames, 3) is where it is, and points
+        are as seen from there.
         """
         self.machine, self.around, self.drawn, self.sharp, self.way = machine, around, drawn, sharp, way
         self.few = outermost(machine)
@@ -62,7 +65,10 @@ class FilmCamera:
         aspect: float = ASPECT,
         empty: Empty = (0.0, 0.0),
     ) -> None:
-        """``empty`` are the parts of the picture's height that stay empty at its top and bottom beside the margin."""
+        """Set up the camera.
+
+        ``empty`` are the parts of the picture's height that stay empty at its top and bottom beside the margin.
+        """
         self.shot, self.clock, self.empty, self.up, self.aspect = shot, clock, empty, mount.up, aspect
         self.azimuth, self.elevation = angles(shot, mount, aspect)
         self.machine, self.around, self.drawn, self.sharp = (
@@ -72,8 +78,9 @@ class FilmCamera:
         self.way = None if subject.way is None else in_studio(subject.way, self.up)
 
     def pose(self, frame: int) -> CameraPose:
-        """Return the pose at a frame: it stands still, swings about the middle once in each showing of the motion, or
-        goes along.
+        """Return the pose at a frame.
+
+        The camera stands still, swings about the middle once in each showing of the motion, or goes along.
         """
         swing = math.radians(self.shot.orbit)
         azimuth = self.azimuth + swing * math.sin(math.tau * self.clock.phase(frame))
@@ -83,8 +90,9 @@ class FilmCamera:
         return self._posed(azimuth, at)
 
     def looks(self) -> list[CameraPose]:
-        """Return some of its poses that say where things are in the picture, of what is followed as it stands at the
-        start of its way.
+        """Return some of its poses that show where things are in the picture.
+
+        What is followed stands at the start of its way.
         """
         if not self.shot.orbit:
             return [self._still]
@@ -92,8 +100,9 @@ class FilmCamera:
         return [self._posed(self.azimuth + swing * part, np.zeros(3)) for part in np.linspace(-1, 1, 5)]
 
     def _moved(self, by: Array) -> CameraPose:
-        """Return the camera as it stands, moved by (3,) m of the studio: what is in focus is measured once, not a
-        frame.
+        """Return the camera moved by (3,) m of the studio.
+
+        Its focus is measured once, not for each frame.
         """
         if not by.any():
             return self._still
@@ -106,8 +115,9 @@ class FilmCamera:
         return self._posed(self.azimuth, np.zeros(3))
 
     def _posed(self, azimuth: float, by: Array) -> CameraPose:
-        """Return the camera at an azimuth (rad), where the shot has its own or swings about the middle, moved by (3,)
-        m.
+        """Return the camera at an azimuth (rad), moved by (3,) m.
+
+        The azimuth is the shot's own, or one of a swing about the middle.
         """
         elevation = self.elevation
         position, target, distance = self._stand

@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class TimePiece:
-    """Film seconds ``film`` (from, to) of a showing show the motion from one moment to another, ``model`` (s)."""
+    """A piece of a showing: film seconds ``film`` show the motion's times ``model`` (s), from and to."""
 
     film: tuple[float, float]
     model: tuple[float, float]
@@ -50,9 +50,9 @@ class TimeMap:
 
     @classmethod
     def from_moments(cls, film: Sequence[float], model: Sequence[float], closes: bool) -> TimeMap:
-        """Return the map with straight pieces between moments ``model`` (s) at film seconds ``film``, both (n,).
+        """Return the map with straight pieces between moments ``model`` (s) at film seconds ``film``.
 
-        Two moments at one film second are a cut.
+        Both are (n,). Two moments at one film second are a cut.
         """
         rows = zip(film[:-1], film[1:], model[:-1], model[1:], strict=True)
         return cls(tuple(TimePiece((a, b), (c, d)) for a, b, c, d in rows if b > a), closes)
@@ -151,7 +151,7 @@ class Clock:
         return TimeMap.from_moments(film, model, closes=self.repeats)
 
     def moment(self, frame: float) -> Moment:
-        """Return the moment that a frame shows; those beyond one showing, or before frame 0, go on with the loop.
+        """Return the moment that a frame shows; frames outside one showing go on with the loop.
 
         The same place in a showing gives the same float in every one, so later ones find their pictures made.
         """
@@ -161,8 +161,9 @@ class Clock:
         return Moment(self.end if step >= self.moving else self.start + (self.end - self.start) * step / self.moving, 0)
 
     def around(self, frame: int) -> tuple[int, int, int]:
-        """Return the frame between those that a shutter sees before and after: none of another showing, if it begins
-        anew.
+        """Return the frames that a shutter sees before, at and after a frame, within its showing.
+
+        A motion that repeats has frames on both sides.
         """
         if self.repeats:
             return frame - 1, frame, frame + 1
@@ -211,7 +212,10 @@ def turns_of(motion: Motion) -> int:
 
 
 def natural_rate(span: float) -> float:
-    """Return seconds of the motion in a second of film: 1, or the round factor nearest to it with a watchable film."""
+    """Return seconds of the motion in a second of film.
+
+    It is 1, or the round factor nearest to it with a watchable film.
+    """
     powers = np.arange(-12, 13)
     rates = sorted((step * 10.0**k for k in powers for step in STEPS), key=lambda rate: abs(math.log(rate)))
     return next((rate for rate in rates if SHORTEST <= span / rate <= LONGEST), span / TURN)

@@ -42,7 +42,10 @@ class View:
     """Part of the width that stays empty at the right."""
 
     def stand(self, points: Array) -> tuple[Array, float]:
-        """Return the closest place (3,) of a camera that holds points (n, 3), and its distance (m) to their middle."""
+        """Return the closest place (3,) of a camera that holds points (n, 3), and its distance (m) to them.
+
+        The distance is to their middle.
+        """
         return fit(points, self.azimuth, self.elevation, self.lens, self.margin, self.empty, self.aspect, self.aside)
 
     def filled(self, points: Array, position: Array) -> tuple[float, float]:
@@ -54,9 +57,11 @@ class View:
 
 
 def held(view: View, machine: Array, around: Array, drawn: Array, few: Array | None = None) -> Array:
-    """Return points (n, 3) that a picture holds: all of the ``machine`` (m, 3), arrows that are ``drawn`` (k, 3) about
-    it, and what stands ``around`` (l, 3) as far as the machine then fills :data:`FILLED`; beyond that, it may leave the
-    frame. ``few`` are the :func:`outermost` of the machine, where they are known.
+    """Return points (n, 3) that a picture holds.
+
+    These are all of the ``machine`` (m, 3), arrows that are ``drawn`` (k, 3) about it, and what stands ``around`` (l,
+    3) as far as the machine then fills :data:`FILLED`; beyond that, it may leave the frame. ``few`` are the
+    :func:`outermost` of the machine, where they are known.
     """
     middle = (machine.min(axis=0) + machine.max(axis=0)) / 2
     drawn = middle + DRAWN * (drawn - middle)
@@ -111,7 +116,7 @@ EDGE = 0.046
 TITLE, NUMBER, RATE, LEGEND = 1 / 16, 1 / 23, 1 / 27, 1 / 25
 """Heights of letters."""
 LINE = 1.4
-"""From one line to the next, in heights of letters."""
+"""Distance from one line to the next, in heights of letters."""
 SMALLER = 0.72
 """To this part letters shrink where a line is too wide, before it is broken into two."""
 LEAST = 0.3
@@ -130,8 +135,9 @@ def sides(aspect: float) -> tuple[float, float]:
 
 
 def lines(title: str, numbers: Sequence[str], rate: str, aspect: float) -> list[LineSpec]:
-    """Return the lines at the upper left: the title, the number that lives (with no words, and as large as its widest
-    value in ``numbers`` allows), the rate. None leaves the picture.
+    """Return the lines at the upper left: title, live number and rate; None leaves the picture.
+
+    The number has no words, and is as large as its widest value in ``numbers`` allows.
     """
     wide = sides(aspect)[0] - 2 * EDGE
     widest = max(numbers, key=width_of, default="")
@@ -152,14 +158,17 @@ def lines(title: str, numbers: Sequence[str], rate: str, aspect: float) -> list[
 
 
 def box_of(lines: Sequence[LineSpec]) -> Box:
-    """Return the place that the lines at the upper left take, from the picture's corner on; empty without lines."""
+    """Return the place of the lines at the upper left, from the picture's corner on.
+
+    It is empty without lines.
+    """
     if not lines:
         return 0.0, 0.0, 0.0, 0.0
     return 0.0, 0.0, max(line.x + line.width for line in lines), max(line.y + LINE * line.size for line in lines)
 
 
 def cards(rows: Sequence[LegendRow], over: Box, aspect: float) -> dict[str, Card]:
-    """Return the places in which a legend may be, by their corners: in the picture, and clear of the words at ``over``.
+    """Return corners of places for a legend: in the picture, and clear of the words at ``over``.
 
     Its letters shrink where there is no such place.
     """
@@ -215,8 +224,9 @@ def _fitting(words: str, size: float, wide: float) -> float:
 
 
 def _broken(words: str, size: float, wide: float) -> tuple[float, list[str]]:
-    """Return the size and lines of a title: in one line, if need be smaller; else in two that are as alike as they can
-    be.
+    """Return the size and lines of a title.
+
+    It stands in one line, if need be smaller; else in two that are as alike as they can be.
     """
     alone = min(size, wide / width_of(words, True))
     spaces = [k for k, letter in enumerate(words) if letter == " "]
@@ -234,8 +244,9 @@ PARTS = 0.0, 0.04, 0.08, 0.12, 0.16, 0.2, 0.24
 
 
 def count_held(camera: CameraPose, points: Array, place: Box, aspect: float = ASPECT) -> int:
-    """Return how many of ``points`` (n, 3) are in a place of the picture: left, upper, right and lower edge, in its
-    parts.
+    """Return the number of ``points`` (n, 3) in a place of the picture.
+
+    The place is given by its left, upper, right and lower edge, in parts of the picture.
     """
     left, upper, right, lower = place
     size = np.array([aspect, 1.0])
@@ -251,9 +262,7 @@ def is_free(poses: Sequence[CameraPose], moving: Array, place: Box, aspect: floa
 def emptiest(
     poses: Sequence[CameraPose], moving: Array, standing: Array, places: Mapping[str, Box], aspect: float = ASPECT
 ) -> str:
-    """Return the corner of the picture that holds the fewest points of what moves (n, 3), then of what stands (m,
-    3).
-    """
+    """Return the corner of the picture with the fewest moving points (n, 3), then still ones (m, 3)."""
 
     def crowd(corner: str) -> tuple[int, ...]:
         here = places[corner]
@@ -279,9 +288,10 @@ WIDEST = 0.9
 
 
 def travels(places: Array, repeats: bool) -> bool:
-    """Return True if a machine with points (T, n, 3) at equal steps of the film goes away from where it is, for good.
+    """Return True if a machine with points (T, n, 3) travels away for good.
 
-    A pendulum swings about a place that it always covers, a planet comes back, and so does what ``repeats``.
+    Points are at equal steps of the film. A pendulum swings about a place that it always covers, a planet comes back,
+    and so does what ``repeats``.
     """
     if repeats or len(places) < 2:
         return False
@@ -295,8 +305,9 @@ def travels(places: Array, repeats: bool) -> bool:
 
 
 def way(places: Array, frames: int, fps: float, repeats: bool) -> Array:
-    """Return the way (frames, 3) of the camera's target past a machine with points (T, n, 3) in the first T frames; it
-    stands at its last place in the others.
+    """Return the way (frames, 3) of the camera's target past a machine with points (T, n, 3).
+
+    It moves in the first T frames and stands at its last place in the others.
     """
     middles = (places.min(axis=1) + places.max(axis=1)) / 2
     middles = np.concatenate([middles, np.repeat(middles[-1:], max(0, frames - len(middles)), axis=0)])[:frames]
@@ -304,7 +315,10 @@ def way(places: Array, frames: int, fps: float, repeats: bool) -> Array:
 
 
 def damped(values: Array, width: float, repeats: bool) -> Array:
-    """Return series (T, k) averaged with a bell of that standard deviation, in steps; held at its ends, or closed."""
+    """Return series (T, k) averaged with a bell of that standard deviation, in steps.
+
+    The series are held at their ends, or closed.
+    """
     reach = max(1, int(np.ceil(3.5 * width)))
     weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) / width) ** 2)
     weights /= weights.sum()

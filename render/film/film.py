@@ -1,4 +1,4 @@
-"""From the files (data.json, parts.json, shot.json) to a scene in plain data, and to the state of each frame."""
+"""A film in plain data: the scene and each frame's state from data.json, parts.json, shot.json."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from shared.contract.shot import Names, Shot, refuse_unknown
 
 Array = NDArray[np.float64]
 MANY = 20_000
-"""About so many points of what moves are looked for under words."""
+"""Number of points of moving things that are looked for under words, about."""
 LOOKED = 60
 """Frames in which springs and ropes are looked at for the camera."""
 
@@ -43,8 +43,9 @@ class Film:
     """Everything the film shows, without a picture yet."""
 
     def __init__(self, motion: Motion, parts: Parts, shot: Shot, folder: Path, aspect: float = ASPECT) -> None:
-        """``folder`` holds the STL files; pictures have that ``aspect``, width over height. Raises UserError if names,
-        bodies or files do not fit together.
+        """Read the STL files in ``folder`` for pictures of that ``aspect``, width over height.
+
+        Raises UserError if names, bodies or files do not fit together.
         """
         self.motion, self.parts, self.shot, self.folder, self.aspect = motion, parts, shot, folder, aspect
         self.poses = Poses(motion)
@@ -98,7 +99,8 @@ class Film:
         )
 
     def state(self, frame: float, camera: CameraPose | None = None) -> State:
-        """Return the state that frame ``frame`` shows; frames before 0 or after the first showing go on with the loop.
+        """Return the state that frame ``frame`` shows; frames outside the first showing go on with the loop.
+
         With a ``camera`` of its own, it may lie between two frames.
         """
         at = self.clock.moment(frame)
@@ -194,7 +196,10 @@ class Film:
 
     @cached_property
     def size(self) -> float:
-        """Diagonal (m) of the box around what is filmed: everything, or, of what is followed, what is seen of it."""
+        """Return the diagonal (m) of the box around what is filmed.
+
+        That is everything, or, of what is followed, what is seen of it.
+        """
         if self._way is None:
             return self.space.size
         return float(np.linalg.norm(np.ptp(self._followed, axis=0)))
@@ -229,7 +234,10 @@ class Film:
 
     @cached_property
     def _tubes(self) -> Array:
-        """Points (n, 3) of springs, ropes and belts, over the whole motion, as seen from the way of the camera."""
+        """Return points (n, 3) of springs, ropes and belts over the whole motion.
+
+        They are as seen from the way of the camera.
+        """
         frames = range(0, self.clock.frames, max(1, self.clock.frames // LOOKED))
         points = [np.zeros((0, 3))]
         for frame in frames:
@@ -301,7 +309,10 @@ class Film:
 
     @cached_property
     def _over(self) -> Box:
-        """The place of the words, in parts of the picture, of which what moves keeps clear; a rate alone is small."""
+        """Return the place of the words, in parts of the picture, that moving parts keep clear of.
+
+        A rate alone is small.
+        """
         box = self._words if self.shot.title is not None else composing.box_of([])
         return composing.in_picture(box, self.aspect)
 

@@ -43,7 +43,10 @@ class CameraPose(msgspec.Struct, kw_only=True, frozen=True):
 
 
 def studio(up: Vector) -> Array:
-    """Return rows right, away and up (3, 3) of the studio in the world: ``up`` is z, or a unit vector in the plane."""
+    """Return rows right, away and up (3, 3) of the studio in the world.
+
+    ``up`` is z, or a unit vector in the plane.
+    """
     if up == Z:
         return np.eye(3)
     x, y, _ = up
@@ -83,13 +86,12 @@ def fit(
     aspect: float = ASPECT,
     aside: float = 0.0,
 ) -> tuple[Array, float]:
-    """Return the closest camera position (3,) that has all ``points`` (n, 3) in the frame, and its distance to their
-    middle.
+    """Return the closest camera position (3,) that has all ``points`` (n, 3) in the frame.
 
-    ``empty`` are the parts of the frame's height that stay empty at its top and at its bottom beside the margin,
-    ``aside`` is that of its width at its right.
-    Each side of the frame is a plane through the camera: |u - cu| <= t (w - cw) for a point at (u, v, w) in camera
-    axes. The tightest planes of two opposite sides fix cu, or cv, and bound cw; the smaller cw holds both.
+    Also returns its distance to their middle. ``empty`` are the parts of the frame's height that stay empty at its top
+    and at its bottom beside the margin, ``aside`` is that of its width at its right. Each side of the frame is a plane
+    through the camera: |u - cu| <= t (w - cw) for a point at (u, v, w) in camera axes. The tightest planes of two
+    opposite sides fix cu, or cv, and bound cw; the smaller cw holds both.
     """
     u, v, w = (points @ axes(azimuth, elevation).T).T
     room = 1 - 2 * margin
@@ -115,7 +117,7 @@ def orbit(
     empty: Empty = (0.0, 0.0),
     aspect: float = ASPECT,
 ) -> float:
-    """Return the smallest distance to ``target`` from which a camera that turns about it keeps all points in the frame.
+    """Return the smallest distance to ``target`` that keeps all points in the frame of a turning camera.
 
     ``empty`` are the parts of the frame's height that stay empty at its top and at its bottom beside the margin; the
     camera is to stand :func:`lifted` for them.
@@ -134,25 +136,27 @@ def orbit(
 
 
 def lifted(lens: float, margin: float, empty: Empty, aspect: float = ASPECT) -> float:
-    """Return how far a camera stands higher, across its sight and in distances to its target, for parts that stay
-    empty.
+    """Return how far a camera stands higher, across its sight, for parts that stay empty.
+
+    It counts in distances to its target.
     """
     above, below = (_cut(part, margin, lens, aspect) for part in empty)
     return above - below
 
 
 def _cut(part: float, margin: float, lens: float, aspect: float) -> float:
-    """Return the tangent of half of what a part of the frame's height takes; a third of what the margins leave is never
-    taken.
+    """Return the tangent of half of what a part of the frame's height takes.
+
+    A third of what the margins leave is never taken.
     """
     return min(part, (1 - 2 * margin) / 3) * half_field(lens, aspect)[1]
 
 
 def depth_of_field(near: float, far: float, lens: float, blur: float) -> tuple[float, float]:
-    """Return the focus distance (m) and f-stop that blur ``near`` and ``far`` (m) alike, by ``blur`` pixels of a 1280
-    wide frame.
+    """Return focus distance (m) and f-stop that blur ``near`` and ``far`` (m) alike, by ``blur`` pixels.
 
-    Thin lens: a point at d is a disc of diameter F^2 |d - s| / (N d (s - F)) when focused at s.
+    The frame is 1280 pixels wide. Thin lens: a point at d is a disc of diameter F^2 |d - s| / (N d (s - F)) when
+    focused at s.
     """
     focus = 2 * near * far / (near + far)
     if blur <= 0 or far - near < 1e-9:
@@ -172,8 +176,9 @@ def project(camera: CameraPose, points: Array, width: float, height: float) -> A
 
 
 def _between(across: Array, depth: Array, below: float, above: float) -> tuple[float, float]:
-    """Return where the camera must be across, and how far forward it may go, to hold both sides, at these tangents; the
-    former for a camera at no depth.
+    """Return the camera's place across and its limit forward to hold both sides, at these tangents.
+
+    The former is for a camera at no depth.
     """
     low, high = float((across + below * depth).min()), float((across - above * depth).max())
     return (low + high) / 2, (low - high) / (below + above)

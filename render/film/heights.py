@@ -94,7 +94,10 @@ class SweptSpace:
         return float(np.linalg.norm(np.ptp(self.all, axis=0)))
 
     def tops_at(self, body: str, x: float, y: float, at: Moment) -> list[float]:
-        """Return heights of the body's pieces whose box, in the body's frame, holds the point (x, y) at that moment."""
+        """Return heights of the body's pieces whose box holds the point (x, y) at that moment.
+
+        Boxes are in the body's frame.
+        """
         return self.tops_under(body, np.array([[x, y]]), at)[0]
 
     def tops_under(self, body: str, points: Array, at: Moment) -> list[list[float]]:
@@ -178,7 +181,10 @@ def tops(parts: Parts, body: str) -> list[float]:
 
 
 def trail_heights(motion: Motion, parts: Parts, trails: Iterable[Trail]) -> dict[str, float]:
-    """Return heights of each trail, by its point: as the shot says, else just over the body that carries the point."""
+    """Return heights of each trail, by its point.
+
+    The shot gives them, else they are just over the body that carries the point.
+    """
     moving = [top for body in motion.bodies for top in tops(parts, body)]
     out = {}
     for trail in trails:
@@ -188,7 +194,7 @@ def trail_heights(motion: Motion, parts: Parts, trails: Iterable[Trail]) -> dict
 
 
 DIRECTIONS = 72
-"""In which a stud may stand beside a pin."""
+"""Directions in which a stud may stand beside a pin."""
 PASSING = 24
 """Moments at which is looked what passes over a pin."""
 
@@ -209,8 +215,9 @@ class Heights:
         return max(heights, default=float(self.space.moving[:, 2].max())) + OVER
 
     def spring(self, shape: Shape, radius: float) -> tuple[float, tuple[float, float]]:
-        """Return the height of something of that radius over what is at its two ends at the start, and the tops
-        there.
+        """Return the height of a spring of that radius over what is at its two ends, and the tops there.
+
+        Both are those at the start.
         """
         at = self.clock.moment(0)
         places = [placed(self.poses.body(b, at), marker) for b, marker in zip(shape.bodies, shape.markers, strict=True)]
@@ -222,9 +229,10 @@ class Heights:
         return max(ends) + LIES * radius, (ends[0], ends[1])
 
     def site(self, bodies: tuple[str, str], places: Array, radius: float) -> Site | None:
-        """Return the room for a spiral of that radius (m) over the pin of two bodies, whose places (T, 2) are given.
+        """Return the room for a spiral of that radius (m) over the pin of two bodies.
 
-        The stud is on the body that is higher, where it is solid so far from the pin; None where neither is.
+        Places (T, 2) of both bodies are given. The stud is on the body that is higher, where it is solid so far from
+        the pin; None where neither is.
         """
         at, (u, v) = self.clock.moment(0), (float(value) for value in places[0])
         seats = []
@@ -265,8 +273,9 @@ class Heights:
         return x, y, max(heights, default=float(self.space.moving[:, 2].max())) + LABEL * self.space.size
 
     def words(self, label: Label, at: Moment) -> Point:
-        """Return the place of a label of the shot: also over all that ever passes under its words, which nothing cuts
-        through.
+        """Return the place of a label of the shot, over all that ever passes under its words.
+
+        So nothing cuts through them.
         """
         if label not in self._passed:
             path = self.poses.motion.points.get(label.at) or self.poses.motion.joints[label.at]

@@ -38,7 +38,7 @@ def stage_key(out: Out, preset: Preset, *more: object) -> str:
 
 
 def named(path: Path, show: str, suffix: str = "") -> Path:
-    """Return the path of a picture that shows what SHOW asks for: ``poster-forces-title.png`` beside ``poster.png``.
+    """Return the path of a picture with SHOW: ``poster-forces-title.png`` beside ``poster.png``.
 
     ``suffix`` is that of a preset in another aspect, where the path has not the preset's name: ``poster-9x16.png``.
     """
@@ -70,8 +70,9 @@ def blender_version() -> str:
 
 
 def read_film(out: Out, show: str = "", aspect: float = ASPECT) -> Film:
-    """Read and check data.json, parts.json and shot.json; ``show`` is what SHOW asks for instead of the shot, and the
-    film is framed for pictures of that ``aspect``, width over height.
+    """Read and check data.json, parts.json and shot.json.
+
+    ``show`` replaces the SHOW of the shot, and the film is framed for pictures of that ``aspect``, width over height.
     """
     from render.film.film import Film
     from shared.contract import read_motion, read_parts

@@ -22,14 +22,15 @@ from shared.stage.files import file_hash
 COLOURED, KEPT = 0.05, 0.06
 """Difference of linear RGB from which on a surface is coloured, and the part of its own colour that it keeps."""
 TINT, PANE = 0.6, 0.06
-"""How much of its colour a transparent piece keeps, and its roughness."""
+"""Part of its colour that a transparent piece keeps, and its roughness."""
 GREY, DARKEST = 0.9, 0.14
 """Lightness of a coloured surface beside arrows, as a part of its own, and the least."""
 
 
 def piece_specs(parts: Parts, shot: Shot, folder: Path, motion: Motion | None = None) -> list[PieceSpec]:
-    """Return all solids, whose STL files are in ``folder``, as far as the shot's section leaves them; ``motion`` says
-    where bodies stand that a section names.
+    """Return all solids of ``folder``, as far as the shot's section leaves them.
+
+    ``motion`` gives the poses of bodies that a section names.
 
     Raises UserError for a material that is not known, and for a section that cuts nothing.
     """
@@ -51,7 +52,10 @@ def piece_specs(parts: Parts, shot: Shot, folder: Path, motion: Motion | None = 
 
 
 def refuse_mismatch(motion: Motion, parts: Parts, folder: Path) -> None:
-    """Raise UserError unless the solids' bodies are the motion's, the ground apart, and the files those described."""
+    """Raise UserError unless the solids' bodies are the motion's and the files those described.
+
+    The ground is left out.
+    """
     name = motion.mechanism
     if parts.mechanism != name:
         raise UserError(f"parts.json is of {parts.mechanism}, data.json of {name}; make both again")
@@ -92,8 +96,9 @@ def as_pane(surface: SurfaceSpec) -> SurfaceSpec:
 
 
 def neutral(surface: SurfaceSpec) -> SurfaceSpec:
-    """Return the surface as grey as it is light: beside arrows no body has a colour, signal colours belong to
-    quantities.
+    """Return the surface as grey as it is light.
+
+    Beside arrows no body has a colour: signal colours belong to quantities.
     """
     light = sum(part * channel for part, channel in zip((0.2126, 0.7152, 0.0722), surface.colour, strict=True))
     grey = GREY * max(light, DARKEST) if max(surface.colour) - min(surface.colour) > COLOURED else light
@@ -119,7 +124,7 @@ def _chosen(mechanism: str, shot: Shot, body: str, name: str, piece: Piece) -> S
 SAME = 0.03
 """Pieces whose middles are nearer than this part of the height of the stack are of one layer."""
 STEP = 0.085
-"""From one layer to the next, as a part of the machine's size, ..."""
+"""Distance from one layer to the next, as a part of the machine's size, ..."""
 MOST = 0.6
 """... and all of them together."""
 
@@ -130,7 +135,7 @@ class Lift(NamedTuple):
     body: str
     piece: str
     order: int
-    """When it is put together, from 0 on; pieces of one layer have the same."""
+    """Order in which it is put together, from 0 on; pieces of one layer have the same."""
     axis: Vector
     """Unit vector of the frame of ground along which it is lifted."""
     distance: float

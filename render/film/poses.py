@@ -16,8 +16,9 @@ Array = NDArray[np.float64]
 
 
 def moved(motion: Motion, body: str, marker: tuple[float, float, float]) -> tuple[Array, Array]:
-    """Return where a marker (x, y, angle) of a body is (T, 2), and its angle (T,), at the times of data.json (m,
-    rad).
+    """Return the position (T, 2; m) and angle (T,; rad) of a marker (x, y, angle) of a body.
+
+    They are at the times of data.json.
     """
     x, y, turn = marker
     count = len(motion.time)
@@ -42,11 +43,10 @@ def local_place(body: BodyMotion, x: float, y: float) -> tuple[float, float]:
 
 
 def hermite(time: Array, value: Array, rate: Array, acceleration: Array, t: Array | float) -> Array:
-    """Return the quintic through samples at ``time`` (n,) with their first and second derivatives, evaluated at ``t``
-    (m,).
+    """Return the quintic through samples at ``time`` (n,), evaluated at ``t`` (m,).
 
-    Samples right before and after an event share a time; at that time the later counts. ``t`` outside ``time`` is
-    held at the nearest end.
+    It matches their first and second derivatives. Samples right before and after an event share a time; at that time
+    the later counts. ``t`` outside ``time`` is held at the nearest end.
     """
     return Quintic(time).weights_at(t).series(value, rate, acceleration)
 
@@ -122,7 +122,10 @@ class Poses:
             self._points[name, "y"] = _arrays(point.y, point.vy, point.ay)
 
     def body(self, name: str, at: Moment) -> tuple[float, float, float]:
-        """Return x, y (m) and the unwrapped theta (rad) of a body's frame; a body that never moves is at the origin."""
+        """Return x, y (m) and the unwrapped theta (rad) of a body's frame.
+
+        A body that never moves is at the origin.
+        """
         if name not in self.motion.bodies:
             return 0.0, 0.0, 0.0
         if self._last[0] != at.time:  # all bodies are asked for one moment after another

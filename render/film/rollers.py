@@ -41,8 +41,9 @@ class Flank:
 
 
 def flank_of(motion: Motion, name: str, centre: Array) -> Flank | None:
-    """Return the flank of a roller whose middle is at ``centre`` (T, 2) in a joint or contact; None if nothing rolls in
-    it.
+    """Return the flank of a roller with its middle at ``centre`` (T, 2); None if nothing rolls in it.
+
+    It rolls in a joint or contact.
     """
     joint, contact = motion.joints.get(name), motion.contacts.get(name)
     if joint is not None and joint.shape is not None:
@@ -67,14 +68,18 @@ def _always(normal: Array) -> Flank:
 
 
 def _leaving(normal: Array, contact: ContactMotion) -> Flank:
-    """Return a contact that opens: before the first time it is closed the roller does not turn, later it is free."""
+    """Return the flank of a contact that opens.
+
+    Before the first time it is closed the roller does not turn, later it is free.
+    """
     closed = np.array([state != "open" for state in contact.state])
     return Flank(normal, closed, ~closed & (np.cumsum(closed) > 0))
 
 
 def _pushed(across: Array, joint: JointMotion, sense: float, there: Mask | None = None) -> Flank:
-    """Return the flank that the reaction on the second body chooses, times ``sense``: left or right in a slot, while a
-    pin is ``there``.
+    """Return the flank that the reaction on the second body chooses, times ``sense``.
+
+    It is left or right in a slot, while a pin is ``there``.
     """
     fx, fy = np.asarray(joint.fx), np.asarray(joint.fy)
     force = np.where(True if there is None else there, sense * (fx * across[:, 0] + fy * across[:, 1]), 0.0)
@@ -102,7 +107,7 @@ def _across(angle: Array) -> Array:
 
 
 def _nearest(motion: Motion, shape: Shape, centre: Array) -> tuple[Array, Array]:
-    """Return (T, 2) each: from the roller's centre to the nearest point of the outline, and along the outline there."""
+    """Return (T, 2) from the roller's centre to the nearest point of the outline, and (T, 2) along it."""
     place, angle = moved(motion, shape.bodies[0], shape.markers[0])
     c, s = np.cos(angle), np.sin(angle)
     off = centre - place

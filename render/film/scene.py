@@ -1,4 +1,4 @@
-"""A scene in plain data: what stands where, of what, in which light. No Blender here; render/blender/ translates it.
+"""A scene in plain data: solids, materials and lights. No Blender here; render/blender/ translates it.
 
 Metres and radians. A Scene is what stays the same over the film, a State is what one frame changes.
 """
@@ -49,7 +49,10 @@ class PieceSpec(msgspec.Struct, kw_only=True, frozen=True):
 
 
 class TrailSpec(msgspec.Struct, kw_only=True, frozen=True):
-    """A fading tube of so many rings; its path is in every State, from the point back to the end of the tail."""
+    """A fading tube of so many rings.
+
+    Its path is in every State, from the point back to the end of the tail.
+    """
 
     name: str
     colour: Colour
@@ -79,9 +82,10 @@ class TubeSpec(msgspec.Struct, kw_only=True, frozen=True):
 
 
 class ArrowSpec(msgspec.Struct, kw_only=True, frozen=True):
-    """A vector that changes: a thin shaft with a cone. Tail and tip are in every State; it is drawn over the parts.
+    """A vector that changes: a thin shaft with a cone, drawn over the parts.
 
-    ``colour`` is what the picture has (sRGB 0..1), ``shaft`` and ``head`` are radii, ``point`` the cone's length.
+    Tail and tip are in every State. ``colour`` is what the picture has (sRGB 0..1), ``shaft`` and ``head`` are radii,
+    ``point`` the cone's length.
     """
 
     name: str
@@ -93,10 +97,10 @@ class ArrowSpec(msgspec.Struct, kw_only=True, frozen=True):
 
 
 class ArcSpec(msgspec.Struct, kw_only=True, frozen=True):
-    """A torque that changes: a curved arrow about its centre, which is in every State with its sweep (rad).
+    """A torque that changes: a curved arrow about its centre.
 
-    ``colour`` as of an arrow; ``radius`` is that of the arc, ``shaft`` and ``head`` radii of the tube and its cone,
-    ``point`` the cone's length.
+    The centre is in every State with its sweep (rad). ``colour`` as of an arrow; ``radius`` is that of the arc,
+    ``shaft`` and ``head`` radii of the tube and its cone, ``point`` the cone's length.
     """
 
     name: str
@@ -108,7 +112,10 @@ class ArcSpec(msgspec.Struct, kw_only=True, frozen=True):
 
 
 class LegendRow(msgspec.Struct, kw_only=True, frozen=True):
-    """A reference arrow: what ``number`` is, and its tip, in parts of the picture's width; or an arc (rad)."""
+    """A reference arrow: meaning of ``number``, and its tip, in parts of the picture's width.
+
+    The tip may be an arc (rad).
+    """
 
     number: str
     words: str
@@ -124,8 +131,9 @@ ARC = 0.6
 
 
 class LineSpec(msgspec.Struct, kw_only=True, frozen=True):
-    """A line of words; without words that of the number, which is in every State. Its upper left corner, its width and
-    the height of its letters are in parts of the picture's shorter side.
+    """A line of words, or of a number that is in every State.
+
+    Its upper left corner, its width and the height of its letters are in parts of the picture's shorter side.
     """
 
     words: str
@@ -138,9 +146,10 @@ class LineSpec(msgspec.Struct, kw_only=True, frozen=True):
 
 
 class Card(msgspec.Struct, kw_only=True, frozen=True):
-    """The card of a legend, in parts of the picture's shorter side: its upper left corner, width and height, the height
-    of its letters; from its edges the first row, the end of the arrows, the start of numbers and of words; and from row
-    to row.
+    """The card of a legend, in parts of the picture's shorter side.
+
+    It has its upper left corner, width and height, the height of its letters; from its edges the first row, the end of
+    the arrows, the start of numbers and of words; and the distance from row to row.
     """
 
     left: float
@@ -166,8 +175,9 @@ class Writing(msgspec.Struct, kw_only=True, frozen=True):
 
 
 class StudioSpec(msgspec.Struct, kw_only=True, frozen=True):
-    """Backdrop and lights, sized by the swept motion: its middle, its radius, the floor's height, in the studio's axes
-    (right, away, up); ``up`` is the unit vector of the world that points up.
+    """Backdrop and lights, sized by the swept motion: its middle, its radius, the floor's height.
+
+    They are in the studio's axes (right, away, up); ``up`` is the unit vector of the world that points up.
     """
 
     look: Look
@@ -176,9 +186,9 @@ class StudioSpec(msgspec.Struct, kw_only=True, frozen=True):
     floor: float
     azimuth: float
     reach: tuple[float, float] = (0.0, 0.0)
-    """How far everything reaches from the middle, to right and left and away, as the camera stands (m)."""
+    """Reach of everything from the middle, to right and left and away, as the camera stands (m)."""
     wall: float | None = None
-    """How far away, in the studio's axes, the wall is at which the machine hangs; null where it does not."""
+    """Distance, in the studio's axes, of the wall at which the machine hangs; null if it hangs at none."""
     up: Point = Z
 
 
@@ -210,6 +220,6 @@ class State(msgspec.Struct, kw_only=True, frozen=True):
     number: str = ""
     """The number that lives, beside the title."""
     lifts: dict[str, float] = {}
-    """By ``body/piece``: how far a piece is lifted along z (m); those that are not named are where they belong."""
+    """Lift along z (m) by ``body/piece``; pieces that are not named are where they belong."""
     hidden: Hidden = ""
     """Hidden objects: trails, or all but the solids (trails, tubes, labels)."""

@@ -38,7 +38,10 @@ class Hatch(NamedTuple):
 
 
 def hatch_of(name: str, plane: Plane) -> Hatch:
-    """Return the hatch of a piece, ``body/piece``, in a plane along z or across it: slope and width follow its name."""
+    """Return the hatch of a piece, ``body/piece``, in a plane along z or across it.
+
+    Slope and width follow its name.
+    """
     x, y, z, _ = plane
     kind = zlib.crc32(name.encode()) % 4
     lean = -1.0 if kind % 2 else 1.0
@@ -79,7 +82,7 @@ WAYS: dict[str, Normal] = {
     "above": (0.0, 1.0, 0.0),
     "below": (0.0, -1.0, 0.0),
 }
-"""From the machine's inside to where a side of a Section is, in the axes of the motion."""
+"""Direction from the machine's inside to a side of a Section, in the axes of the motion."""
 ASIDE = 32.0
 """Azimuth (degrees) from which on a face that looks to the side is seen well."""
 STILL = 1e-9
@@ -88,8 +91,9 @@ STILL = 1e-9
 
 @dataclass(frozen=True)
 class Cut:
-    """How a piece is cut: beyond all ``planes`` of its body's frame, or where ``fixed`` of the world; ``gone`` is one
-    of which nothing is ever left.
+    """The cut of a piece: beyond all ``planes`` of its body's frame, or where ``fixed`` of the world.
+
+    ``gone`` is one of which nothing is ever left.
     """
 
     planes: tuple[Plane, ...] = ()
@@ -106,7 +110,9 @@ def section_of(section: Section | float) -> Section:
 
 
 def cuts_of(parts: Parts, asked: Section | float, folder: Path, motion: Motion | None) -> dict[Key, Cut]:
-    """Return how each piece is cut that is cut at all; ``motion`` is asked where bodies stand and what they go through.
+    """Return the cut of each piece that is cut at all.
+
+    ``motion`` gives the poses of bodies and what they go through.
 
     Raises UserError for a section that cuts no piece open.
     """
@@ -120,8 +126,10 @@ def cuts_of(parts: Parts, asked: Section | float, folder: Path, motion: Motion |
 
 
 def between_bodies(parts: Parts, asked: Section | float, folder: Path, motion: Motion | None) -> tuple[Plane, ...]:
-    """Return the planes of the world beyond all of which springs, ropes and belts are cut away: those of a section that
-    cuts everything that moves where it is, from the front or by fixed planes; none of one that names its pieces.
+    """Return the planes of the world beyond all of which springs, ropes and belts are cut away.
+
+    They are those of a section that cuts everything that moves where it is, from the front or by fixed planes; there
+    are none for one that names its pieces.
     """
     section = section_of(asked)
     if section.only or not (section.fixed or section == Section(front=section.front)):
@@ -145,9 +153,7 @@ def _planned(
 
 
 def seen_from(section: Section | float, azimuth: float) -> float:
-    """Return the azimuth (degrees) from which the cut faces are seen of a machine that is looked at from another
-    one.
-    """
+    """Return the azimuth (degrees) that shows the cut faces of a machine seen from another one."""
     asked = section_of(section)
     return max(azimuth, ASIDE) if asked.right else min(azimuth, -ASIDE) if asked.left else azimuth
 
@@ -216,8 +222,10 @@ class _Solid:
 
 
 def _cut(parts: Parts, section: Section, depths: dict[str, float], moves: bool) -> Iterator[tuple[Key, Piece]]:
-    """Return the pieces that are cut: those that are named; else all from the front, or by planes through which bodies
-    move, and from other sides what stands still.
+    """Return the pieces that are cut.
+
+    They are those that are named; else all from the front, or by planes through which bodies move, and from other sides
+    what stands still.
 
     Raises UserError where nothing stands still.
     """

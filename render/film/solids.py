@@ -20,7 +20,10 @@ _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attrib
 
 
 def read_triangles(path: Path) -> Array:
-    """Return corners (n, 3, 3) in m of the triangles of a binary STL; raises UserError if the file is not whole."""
+    """Return corners (n, 3, 3) in m of the triangles of a binary STL.
+
+    Raises UserError if the file is not whole.
+    """
     content = path.read_bytes()
     count = int.from_bytes(content[80:84], "little") if len(content) >= 84 else -1
     if len(content) != 84 + _TRIANGLE.itemsize * count or count < 1:
@@ -29,20 +32,27 @@ def read_triangles(path: Path) -> Array:
 
 
 def read_corners(path: Path) -> Array:
-    """Return corners (3 n, 3) in m of all triangles of a binary STL; raises UserError if the file is not whole."""
+    """Return corners (3 n, 3) in m of all triangles of a binary STL.
+
+    Raises UserError if the file is not whole.
+    """
     return read_triangles(path).reshape(-1, 3)
 
 
 def prism(vertices: Array) -> Array:
-    """Return the upright prism around vertices (n, 3): the convex outline in x, y at the lowest and the highest z."""
+    """Return the upright prism around vertices (n, 3).
+
+    It is the convex outline in x, y at the lowest and the highest z.
+    """
     outline = _convex_outline(vertices[:, :2])
     heights = vertices[:, 2].min(), vertices[:, 2].max()
     return np.concatenate([np.column_stack([outline, np.full(len(outline), z)]) for z in heights])
 
 
 def outermost(points: Array) -> Array:
-    """Return the points (n, 3) that are farthest in some direction: within two thousandths of their size, if they are
-    longer in the plane than high, all are inside.
+    """Return the points (n, 3) that are farthest in some direction.
+
+    If they are longer in the plane than high, all are inside within two thousandths of their size.
     """
     angles = np.linspace(0.0, 2 * np.pi, DIRECTIONS, endpoint=False)
     ways = np.array([(np.cos(angle), np.sin(angle), lean) for angle in angles for lean in LEANS])

@@ -69,15 +69,19 @@ class Moves(NamedTuple):
 
 
 def vectors(motion: Motion, show: Sequence[Quantity]) -> list[Vector]:
-    """Return all that ``show`` asks for, in the order of the file; vectors that are nothing all the time are among
-    them.
+    """Return all that ``show`` asks for, in the order of the file.
+
+    Vectors that are nothing all the time are among them.
     """
     made = {"velocities": _movements, "accelerations": _movements, "forces": _forces, "reactions": _reactions}
     return [vector for quantity in show for vector in made[quantity](motion, quantity)]
 
 
 def at_time(time: Array, values: Array, t: float) -> Array:
-    """Return rows of ``values`` (T, n) at ``t``, linear between rows; of rows that share a time the later counts."""
+    """Return rows of ``values`` (T, n) at ``t``, linear between rows.
+
+    Of rows that share a time the later counts.
+    """
     t = min(max(t, float(time[0])), float(time[-1]))
     starts = np.flatnonzero(np.diff(time) > 0)
     i = starts[max(int(np.searchsorted(time[starts], t, side="right")) - 1, 0)]
@@ -108,9 +112,7 @@ def _forces(motion: Motion, quantity: Quantity) -> Iterator[Vector]:
 
 
 def _movements(motion: Motion, quantity: Quantity) -> Iterator[Vector]:
-    """Yield arrows of traced points, of pins and other moving joints, and of centres of mass of bodies that have
-    neither.
-    """
+    """Yield arrows of traced points, of moving joints, and of centres of bodies that have neither."""
     fast = quantity == "velocities"
     slack = SAME * _extent(motion)
     shown: list[Array] = []
@@ -188,9 +190,10 @@ class Torque(Acting):
 
 
 def torques(motion: Motion, show: Sequence[Quantity]) -> list[Torque]:
-    """Return all that ``show`` asks for, in the order of the file; those that are nothing all the time are among them.
+    """Return all that ``show`` asks for, in the order of the file.
 
-    A torque between two bodies is there once: as the second one feels it, or the first where the second is ground.
+    Torques that are nothing all the time are among them. A torque between two bodies is there once: as the second one
+    feels it, or the first where the second is ground.
     """
     made = {"forces": _applied, "reactions": _reaction_torques}
     return [torque for quantity in show if quantity in made for torque in made[quantity](motion, quantity)]
@@ -236,7 +239,7 @@ TINY = 0.025
 
 @dataclass(frozen=True)
 class Scale:
-    """Scale of one unit: what is drawn at full length, a round number below it, and whether longer arrows are cut."""
+    """Scale of one unit: the value at full length, a round number below it, and if longer ones are cut."""
 
     unit: str
     largest: float

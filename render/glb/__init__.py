@@ -1,4 +1,4 @@
-"""The GLB: ``python -m render glb NAME`` writes the parts with their motion as one animation for any glTF viewer."""
+"""The GLB: ``python -m render glb NAME`` writes the parts with their motion for any glTF viewer."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The mechanism as a glTF scene: a node for each body, its pieces below, its motion as one animation in real time.
+"""The mechanism as a glTF scene: a node for each body, its pieces below, its motion in real time.
 
 The root turns what points up in the scene into y of glTF. A body's translation and rotation are its frame in data.json;
 the ground stands still; springs, ropes and belts stand beside the bodies. There is no floor, no light and no camera:
@@ -26,8 +26,9 @@ Quaternion = tuple[float, float, float, float]
 
 
 def turn(up: Vector) -> Quaternion:
-    """Return the quaternion x, y, z, w with which ``up``, z or a unit vector in the plane, becomes y of glTF: a quarter
-    turn about x, backwards, or a turn about z.
+    """Return the quaternion x, y, z, w that turns ``up`` to y of glTF.
+
+    ``up`` is z or a unit vector in the plane: it is a quarter turn about x, backwards, or a turn about z.
     """
     if up == Z:
         return -(0.5**0.5), 0.0, 0.0, 0.5**0.5
@@ -54,8 +55,9 @@ def _content(film: Film, pieces: Sequence[PieceSpec], front: float = math.inf) -
 
 
 def scene_of(film: Film, pieces: Sequence[PieceSpec], front: float = math.inf) -> tuple[Document, Animation]:
-    """Return the scene with these pieces and all springs, ropes and belts as far as they are not higher than ``front``
-    (m), and what its nodes do.
+    """Return the scene with these pieces and all springs, ropes and belts, and the work of its nodes.
+
+    Springs, ropes and belts are left out where they are higher than ``front`` (m).
     """
     document, motion = Document(), film.motion
     paints, animation = Paints(document), Animation(document, motion)
@@ -98,8 +100,9 @@ def scene_of(film: Film, pieces: Sequence[PieceSpec], front: float = math.inf) -
 
 
 def mesh_of(document: Document, piece: PieceSpec, paints: Paints, radius: float) -> int:
-    """Return the number of a piece's mesh in the document, as far as a section leaves it in a machine of this radius
-    (m).
+    """Return the number of a piece's mesh in the document, as far as a section leaves it.
+
+    The machine has this radius (m).
     """
     triangles = read_triangles(Path(piece.stl))
     faces = faces_of(triangles, piece, radius) if piece.cut else [(triangles, piece.surface)]

@@ -25,10 +25,9 @@ NEAR = 1e-9
 
 
 def striped(triangles: Array, hatch: Hatch, light: float) -> tuple[Array, Array]:
-    """Return triangles (n, 3, 3) (m) split along the edges of stripes: those in the ``light`` part of each, and the
-    dark ones.
+    """Return triangles (n, 3, 3) (m) split along the edges of stripes: the light ones and the dark ones.
 
-    The hatch's period is in m.
+    ``light`` is the light part of each stripe. The hatch's period is in m.
     """
     way = np.array(hatch.way)
     for line in _lines(triangles, hatch, light):
@@ -38,7 +37,7 @@ def striped(triangles: Array, hatch: Hatch, light: float) -> tuple[Array, Array]
 
 
 def along_rim(triangles: Array, plane: Plane, hatch: Hatch, light: float, level: float) -> Array:
-    """Return triangles (n, 3, 3) (m) whose edges that lie in a plane, within ``level``, are split where stripes end."""
+    """Return triangles (n, 3, 3) (m) whose edges in a plane, within ``level``, are split at stripes."""
     way, normal = np.array(hatch.way), np.array(plane[:3])
     on_it = np.abs(triangles @ normal - plane[3]) < level
     at_rim = on_it.sum(axis=1) == 2
@@ -64,8 +63,9 @@ def _lines(points: Array, hatch: Hatch, light: float) -> list[float]:
 
 
 def _split(triangles: Array, sides: Array) -> Array:
-    """Return triangles (n, 3, 3) split where ``sides`` (n, 3), how far corners are beyond a line (m), change their
-    sign.
+    """Return triangles (n, 3, 3) split where ``sides`` (n, 3) change their sign.
+
+    ``sides`` are how far corners are beyond a line (m).
     """
     sign = np.where(sides > NEAR, 1, np.where(sides < -NEAR, -1, 0))
     both = (sign.max(axis=1) > 0) & (sign.min(axis=1) < 0)
@@ -113,21 +113,23 @@ PART = "cut as they stand at the start, for meshes of a file cannot be cut anew 
 
 
 def pieces_of(film: Film) -> list[PieceSpec]:
-    """Return the film's pieces as files of meshes have them: those that go through fixed planes are cut as they
-    start.
+    """Return the film's pieces as files of meshes have them.
+
+    Pieces that go through fixed planes are cut as they start.
     """
     return [piece for each in film.scene.pieces if (piece := _at_start(film, each)) is not None]
 
 
 def front_of(film: Film) -> float:
-    """Return the height (m) beyond which springs, ropes and belts are cut away; infinite where they are not, as by
-    planes that stand up, for what hangs between bodies passes those in every other shape.
+    """Return the height (m) beyond which springs, ropes and belts are cut away; infinite if they are not.
+
+    Planes that stand up leave them: in every other shape what hangs between bodies passes those.
     """
     return film.cut[0][3] if film.cut and all(plane[2] for plane in film.cut) else math.inf
 
 
 def said_of(film: Film) -> str:
-    """Return words on bodies that are cut so, and springs, ropes and belts that are not; empty without any."""
+    """Return a note on bodies, springs, ropes and belts that are cut otherwise; empty without any."""
     bodies = dict.fromkeys(piece.body for piece in film.scene.pieces if piece.fixed)
     words = [f"{', '.join(bodies)}: {PART}"] if bodies else []
     if film.cut and front_of(film) == math.inf:
@@ -136,8 +138,10 @@ def said_of(film: Film) -> str:
 
 
 def faces_of(triangles: Array, piece: PieceSpec, radius: float) -> list[tuple[Array, SurfaceSpec]]:
-    """Return triangles (n, 3, 3) (m) of what a piece's section leaves, with their surfaces: its own, and the light and
-    dark stripes of its cut faces, as wide as a machine of this ``radius`` (m) has them.
+    """Return triangles (n, 3, 3) (m) of what a piece's section leaves, with their surfaces.
+
+    The surfaces are the piece's own, and the light and dark stripes of its cut faces, as wide as a machine of this
+    ``radius`` (m) has them.
 
     Raises UserError where manifold3d is missing, or the piece is not closed.
     """
@@ -159,7 +163,7 @@ def _hatch(piece: PieceSpec, plane: Plane, radius: float) -> Hatch:
 
 
 def cut_open(triangles: Array, piece: PieceSpec) -> tuple[Array, list[Array]]:
-    """Return triangles (n, 3, 3) (m) of what a piece's section leaves: of its surface, and of the cut along each plane.
+    """Return triangles (n, 3, 3) (m) of what a piece's section leaves: surface and cut along each plane.
 
     Raises UserError where manifold3d is missing, or the piece is not closed.
     """
@@ -190,8 +194,9 @@ def _sorted(kept: Array, planes: Sequence[tuple[float, ...]]) -> tuple[Array, li
 
 
 def _rest(solid: Any, piece: PieceSpec, corners: Array) -> Any:
-    """Return the solid without what is beyond all planes; a single one is exact, several are a wedge that is taken
-    away.
+    """Return the solid without what is beyond all planes.
+
+    A single plane is exact, several are a wedge that is taken away.
     """
     if len(piece.cut) == 1:
         x, y, z, place = piece.cut[0]

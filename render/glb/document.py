@@ -42,8 +42,9 @@ class Document:
         return len(self.json[kind]) - 1
 
     def array(self, values: np.ndarray, target: int | None = None, bounds: bool = False) -> int:
-        """Return the accessor of an array (n,) or (n, 2 .. 4) of float32, uint32 or uint16; ``bounds`` tells its
-        range.
+        """Return the accessor of an array (n,) or (n, 2 .. 4) of float32, uint32 or uint16.
+
+        ``bounds``: its range is written too.
         """
         self._buffer.extend(b"\0" * (-len(self._buffer) % 4))
         view: dict[str, Any] = {"buffer": 0, "byteOffset": len(self._buffer), "byteLength": values.nbytes}
@@ -131,7 +132,7 @@ def material(surface: SurfaceSpec, name: str) -> dict[str, Any]:
 # Triangles of an STL as vertices with normals: round walls are smooth, edges that turn by more than SHARP are not.
 
 SHARP = np.radians(32.0)
-"""As in the film."""
+"""Angle as in the film."""
 FINE = 1e-3
 """Normals that differ by less are one."""
 PAIRS = 4_000_000
@@ -141,10 +142,10 @@ Floats = NDArray[np.float32]
 
 
 def smooth(triangles: NDArray[np.floating]) -> tuple[Floats, Floats, NDArray[np.unsignedinteger]]:
-    """Return positions (n, 3), unit normals (n, 3) and corners (3 m,) of triangles (m, 3, 3); flat ones are left out.
+    """Return positions (n, 3), unit normals (n, 3) and corners (3 m,) of triangles (m, 3, 3).
 
-    The normal at a corner is the mean of those of the triangles that meet there and turn by less than SHARP against
-    its own, weighted by their angles at the corner.
+    Flat triangles are left out. The normal at a corner is the mean of those of the triangles that meet there and turn
+    by less than SHARP against its own, weighted by their angles at the corner.
     """
     triangles = np.asarray(triangles, float)
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
@@ -214,7 +215,10 @@ class Track(NamedTuple):
 
 
 class Animation:
-    """Collects what is animated; of two times of data.json at an event it has one, because poses agree there."""
+    """Collector of everything that is animated.
+
+    Of two times of data.json at an event it has one, because poses agree there.
+    """
 
     def __init__(self, document: Document, motion: Motion) -> None:
         self._document = document
@@ -256,8 +260,9 @@ class Animation:
         self._channels.append({"sampler": len(self._samplers) - 1, "target": {"node": node, "path": path}})
 
     def place(self, node: int, place: Array, angle: Array) -> None:
-        """Move a node to places (n, 3) (m), turned about z by angles (n,) (rad); without the clip it is where it
-        begins.
+        """Move a node to places (n, 3) (m), turned about z by angles (n,) (rad).
+
+        Without the clip it is where it begins.
         """
         self.add(node, "translation", place)
         turn = self.turn(node, angle)

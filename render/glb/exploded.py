@@ -1,4 +1,4 @@
-"""The machine that comes apart and together, as a GLB with the clip "exploded": its pieces alone, as they start.
+"""The machine that comes apart and together, as a GLB of its pieces with the clip "exploded".
 
 The motion has its own file: viewers play the first clip of a file, and some all of them at once.
 """

@@ -29,11 +29,11 @@ Tube = tuple[Array, Array, NDArray[np.signedinteger]]
 
 
 def below(tube: Tube, place: float) -> Tube:
-    """Return a tube without what is higher than ``place`` (m), closed by a flat cut face; without corners where all of
-    it is.
+    """Return a tube without what is higher than ``place`` (m), closed by a flat cut face.
 
-    What is beyond is laid into the plane, and goes between rings that are wholly there: exact for a tube that stands
-    upright, to within a facet for one that lies level, to within a ring for a coil.
+    It has no corners if all of it is higher. What is beyond is laid into the plane, and goes between rings that are
+    wholly there: exact for a tube that stands upright, to within a facet for one that lies level, to within a ring for
+    a coil.
     """
     positions, normals, corners = tube
     beyond = positions[:, 2] > place
@@ -155,8 +155,9 @@ def _flat(belt: Belt) -> Array:
 
 
 def _links(document: Document, paints: Paints, belt: Belt, ahead: Array, left: float) -> list[int]:
-    """Return meshes of the links that take turns, without what is higher than ``left`` over their middle (m); none
-    where nothing is left.
+    """Return meshes of links, without what is higher than ``left`` (m) over their middle.
+
+    The links alternate. There are none where nothing is left.
     """
     length = float(np.hypot(*np.moveaxis(ahead[..., :2], -1, 0)).mean())
     specs = {
@@ -297,8 +298,9 @@ class Springs:
         self._document.json["nodes"][node]["scale"] = scale[0].astype(np.float32).tolist()
 
     def _node(self, spec: TubeSpec, name: str, tubes: list[Tube], height: float = 0.0) -> int | None:
-        """Return a node at a height (m) with a tube as its mesh; tubes beyond the first are shapes that it may be
-        blended to. None where all of it is cut away.
+        """Return a node at a height (m) with a tube as its mesh; None where all of it is cut away.
+
+        Tubes beyond the first are shapes that it may be blended to.
         """
         if self._front < math.inf:
             tubes = [below(shape, self._front - height) for shape in tubes]

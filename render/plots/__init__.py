@@ -1,4 +1,7 @@
-"""Plots of a motion: ``python -m render plots NAME`` draws out/<mechanism>/plots/ from data.json and skeleton.json."""
+"""Plots of a motion: ``python -m render plots NAME`` draws out/<mechanism>/plots/.
+
+They show data.json and skeleton.json.
+"""
 
 from __future__ import annotations
 
@@ -24,11 +27,11 @@ READ = [
 
 
 def run(name: str, spectra: str = "", every: bool = False) -> None:
-    """Draw every plot of one mechanism, if the motion or the drawing code changed; same motion, same bytes.
+    """Draw every plot of a mechanism if the motion or the drawing code changed.
 
-    ``spectra``: names of quantities, commas between them, instead of those of mechanism.py. Raises UserError if
-    data.json is missing or does not hold together, and for a spectrum of what there is not, unless ``every``
-    mechanism is asked for the same.
+    The same motion gives the same bytes. ``spectra``: names of quantities, commas between them, instead of those of
+    mechanism.py. Raises UserError if data.json is missing or does not hold together, and for a spectrum of what there
+    is not, unless ``every`` mechanism is asked for the same.
     """
     out = Out(name)
     motion, skeleton = read_motion(out.motion, out.name), read_skeleton(out.skeleton)
@@ -58,7 +61,9 @@ def run(name: str, spectra: str = "", every: bool = False) -> None:
 
 
 def is_fresh(name: str, spectra: str = "", every: bool = False) -> bool:
-    """Return True if there is nothing to do, by the names of the last drawing: the same motion has the same plots.
+    """Return True if the plots of the last drawing are those of this motion.
+
+    The same motion has the same plots.
 
     Raises UserError for a SPECTRA in mechanism.py that is none, OSError where the motion is missing.
     """
@@ -120,9 +125,10 @@ FORM = 'write names in quotes: SPECTRA = ("shaking force", "motor")'
 
 
 def spectra_asked(name: str, words: str = "") -> list[str]:
-    """Return names of quantities, each once: those of ``words``, commas between them, else those of mechanism.py.
+    """Return names of quantities, each once: from ``words``, else from mechanism.py.
 
-    The file is read without running it. Raises UserError where its SPECTRA is no plain tuple or list of texts.
+    ``words`` have commas between them. The file is read without running it. Raises UserError where its SPECTRA is no
+    plain tuple or list of texts.
     """
     if words.strip():
         return list(dict.fromkeys(word.strip() for word in words.split(",") if word.strip()))

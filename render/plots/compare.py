@@ -1,6 +1,7 @@
-"""Variants of a mechanism on the same pages: ``python -m render compare NAME`` draws out/<name>/compare/.
+"""Variants of a mechanism on the same pages: ``python -m render compare NAME``.
 
-Each variant has a colour, the same on every page; the numbers are those of their data.json.
+They are in out/<name>/compare/. Each variant has a colour, the same on every page; the numbers are those of their
+data.json.
 """
 
 from __future__ import annotations

@@ -35,7 +35,7 @@ ONE = {"point-": point, "slider-": slider, "spectrum-": spectrum_of}
 
 
 def figure(plot: str, motion: Motion, skeleton: Skeleton) -> Figure:
-    """Draw one plot: ``path``, a name of :data:`WHOLE` or ``point-<P>``, ``slider-<body>``, ``spectrum-<what>``."""
+    """Draw a plot: a name of :data:`WHOLE`, ``point-<P>``, ``slider-<body>`` or ``spectrum-<what>``."""
     with house_style():
         if plot == "path":
             return path(motion, skeleton)

@@ -19,7 +19,7 @@ from shared.contract.quantity import angle_step, figures, labelled, prefixed, wr
 # Quantities of an axis: its words with the unit, its numbers with the prefix that they need, ticks of angles, cuts.
 
 TICKS = 5
-"""On an axis at most, about; of angles one more."""
+"""Number of ticks on an axis, about; of angles one more."""
 LETTER = 5.6
 """Points that a letter of an axis's words takes; words too long for a vertical axis have their unit below them."""
 PEAK, KEPT = 12.0, 3.0
@@ -47,7 +47,7 @@ def dress_axis(axis: Axis, words: str, unit: str, ticks: int = TICKS) -> None:
 def dress_plane(
     axes: Axes, words: tuple[str, str] = ("x", "y"), unit: str = "m", ticks: tuple[int, int] = (15, 9)
 ) -> None:
-    """Label both axes of a plane (places in m, forces in N) with one prefix; what is drawn on them is final."""
+    """Label both axes of a plane (m or N) with one prefix; what is drawn on them is final."""
     axes.apply_aspect()
     largest = max(float(np.abs(axis.get_view_interval()).max()) for axis in (axes.xaxis, axes.yaxis))
     factor, named = prefixed(largest, unit)
@@ -58,9 +58,10 @@ def dress_plane(
 
 
 def turned(x: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the curve of an angle (T,) in degrees over x (T,): within one turn, broken where the next one begins.
+    """Return the curve of an angle (T,) in degrees over x (T,), within one turn.
 
-    What makes no whole turn is moved by whole turns alone, so that its middle is within half a turn of zero.
+    It is broken where the next turn begins. What makes no whole turn is moved by whole turns alone, so that its middle
+    is within half a turn of zero.
     """
     if np.ptp(angle) < 360.0 - 1e-6:
         return x, angle - 360.0 * round(float(angle.max() + angle.min()) / 720.0)
@@ -74,7 +75,7 @@ def turned(x: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def cut(axes: Axes, curves: Sequence[np.ndarray], margin: np.ndarray | None, unit: str) -> bool:
-    """Return the limit the vertical axis where curves (T,) go far beyond their usual near a singular pose, and say so.
+    """Limit the vertical axis if curves (T,) go far out near a singular pose, and note it.
 
     ``margin`` (T,): how far each pose is from a singular one. Returns whether it was cut.
     """
@@ -126,10 +127,10 @@ class Horizon:
 
 
 def horizon(motion: Motion) -> Horizon:
-    """Return the driver's angle in degrees if there is one driver, it is an angle and it never turns back; else time in
-    s.
+    """Return the driver's angle in degrees, or time in s.
 
-    A driver that turns clockwise has its angle counted that way, so that what comes later is always at the right.
+    It is time unless there is one driver, it is an angle and it never turns back. A driver that turns clockwise has its
+    angle counted that way, so that what comes later is always at the right.
     """
     margin = np.asarray(motion.diagnostics.singularity_margin)
     if len(motion.drivers) == 1:
@@ -164,7 +165,7 @@ SPACE = 8.0
 
 
 def mark(figure: Figure, over: Horizon, motion: Motion) -> None:
-    """Draw a dotted line through all axes at each mark, with its words above the first axes if there is room."""
+    """Draw a dotted line through all axes at each mark, with its words on top if there is room."""
     first, *_ = figure.axes
     width = first.get_position().width * figure.get_size_inches()[0] * 72.0
     low, high = first.get_xlim()
@@ -180,7 +181,7 @@ def mark(figure: Figure, over: Horizon, motion: Motion) -> None:
 
 
 def _within(width: float, middle: float, length: float) -> tuple[float, float]:
-    """Return where words of this length about ``middle`` begin and end, moved into the width of the axes (points)."""
+    """Return the ends (points) of words of this length about ``middle``, moved into the axes' width."""
     begin = max(min(middle - 0.5 * length, width - length), 0.0)
     return begin, begin + length
 

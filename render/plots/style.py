@@ -102,7 +102,10 @@ def colour(index: int) -> str:
 
 
 def label_ends(axes: Axes, x: float, lines: Sequence[tuple[str, float, str]], gap: float = 13.0) -> None:
-    """Write (text, y, colour) beside the right ends of lines; texts closer than ``gap`` points are spread apart."""
+    """Write (text, y, colour) beside the right ends of lines.
+
+    Texts closer than ``gap`` points are spread apart.
+    """
     if not lines:
         return
     low, high = axes.get_ylim()
@@ -117,9 +120,10 @@ def label_ends(axes: Axes, x: float, lines: Sequence[tuple[str, float, str]], ga
 
 
 def spread(wanted: np.ndarray, gap: float, height: float) -> np.ndarray:
-    """Return positions in the order of ``wanted``: ``gap`` apart where ``height`` has room, each near its own wish.
+    """Return positions at least ``gap`` apart, as ``height`` allows, each near its ``wanted`` one.
 
-    Least squares: with ``gap`` times its rank taken off each wish, the answer need only not fall.
+    They keep the order of ``wanted``. Least squares: with ``gap`` times its rank taken off each wish, the answer need
+    only not fall.
     """
     order = np.argsort(wanted, kind="stable")
     gap = min(gap, height / max(len(wanted) - 1, 1))
@@ -133,7 +137,10 @@ def spread(wanted: np.ndarray, gap: float, height: float) -> np.ndarray:
 
 
 def ink_of(motion: Motion, bodies: Sequence[str]) -> str:
-    """Return the colour of the last of these bodies that moves: the one that a joint, driver or force acts on."""
+    """Return the colour of the last of these bodies that moves.
+
+    It is the one that a joint, driver or force acts on.
+    """
     moving = [body for body in bodies if body in motion.bodies]
     return motion.bodies[moving[-1]].colour if moving else INK
 
@@ -144,9 +151,9 @@ def acting_on(motion: Motion, name: str) -> str:
 
 
 def apart(inks: Sequence[str]) -> list[str]:
-    """Return these colours, each once: what comes after another of the same colour gets one that nothing has yet.
+    """Return these colours, each once.
 
-    Where there are no more, colours repeat.
+    A second thing of one colour gets one that nothing has yet. Where there are no more, colours repeat.
     """
     free = [ink for ink in (*PARTS, *PALETTE) if ink not in inks]
     out: list[str] = []
@@ -162,7 +169,7 @@ DISTANCE = 15.0
 """Pixels between a point and its name."""
 DIRECTIONS = np.radians(np.arange(45, 405, 45))
 NEAR, FAR = (1.0, 2.0), (3.5, 5.0, 7.0, 9.0, 12.0, 16.0)
-"""How far names are away, in distances: as a rule, and where there is no room."""
+"""Distances of names, in steps: as a rule, and where there is no room."""
 CLASH, OUTSIDE = 1000.0, 500.0
 """Costs of a name over another, and over the frame's edge, beside which points of lines under a name count one each."""
 

@@ -23,7 +23,10 @@ READ = [*contract_sources("clearance"), *FRAME_SOURCES]
 
 
 def run(name: str) -> None:
-    """Write out/<name>/report.md, if its inputs or its own sources have changed. Raises UserError without data.json."""
+    """Write out/<name>/report.md, if its inputs or its own sources have changed.
+
+    Raises UserError without data.json.
+    """
     out = Out(name)
     motion = read_motion(out.motion, out.name)
     parts = read_parts(out.parts, out.name) if out.parts.is_file() else None

@@ -21,7 +21,9 @@ from shared.stage.paths import Out
 
 
 def facts(motion: Motion, parts: Parts | None, clearance: Clearance | None) -> list[str]:
-    """Return freedoms, time, fastest place, largest effort and reaction, transmission angle, mass, clearance."""
+    """Return freedoms, time, speed, effort, reaction, transmission angle, mass and clearance.
+
+    Speed is that of the fastest place; effort and reaction are the largest."""
     span, amount = motion.time[-1] - motion.time[0], Amounts(motion)
     out = [f"{counted(motion.diagnostics.dof, 'degree')} of freedom"]
     out.append(f"repeats after {moment(motion.period)}" if motion.period else f"{moment(span)} of motion")
@@ -50,9 +52,7 @@ def facts(motion: Motion, parts: Parts | None, clearance: Clearance | None) -> l
 
 
 def fastest(motion: Motion) -> tuple[str, float]:
-    """Return the traced point, joint or body (by its centre of mass) that is the fastest at any time, and its speed
-    (m/s).
-    """
+    """Return the fastest traced point, joint or body (by its centre of mass), and its speed (m/s)."""
     speeds = {name: _speed_of(body) for name, body in motion.bodies.items()}
     speeds |= {name: float(np.hypot(point.vx, point.vy).max()) for name, point in motion.points.items()}
     speeds |= {name: v for name, v in _joint_speeds(motion).items() if name not in speeds}
@@ -69,7 +69,7 @@ def _speed_of(body: BodyMotion) -> float:
 
 
 def _efforts(motion: Motion) -> list[tuple[str, str]]:
-    """Return the peak efforts of what moves the mechanism where no driver does, those that give most power first."""
+    """Return the peak efforts of forces that move the mechanism without a driver, most power first."""
     efforts = []
     for name, force in motion.forces.items():
         if force.drives and force.effort is not None and np.any(force.effort) and max(force.power) > 0:
@@ -99,7 +99,7 @@ COLUMNS = ("mechanism", "time", "pieces", "peak speed", "peak effort", "least ga
 
 
 def run(lines: Iterable[str] = sys.stdin) -> None:
-    """Print the table; each line has a mechanism's name, the seconds its run took, and ``done`` or ``failed``."""
+    """Print the table, a line for each mechanism: name, seconds of its run, ``done`` or ``failed``."""
     from rich.box import SIMPLE
     from rich.console import Console
     from rich.table import Table
@@ -114,7 +114,10 @@ def run(lines: Iterable[str] = sys.stdin) -> None:
 
 
 def row_of(line: str) -> list[str]:
-    """Return the words of a row. Results of a failed run are left out, because they may be of an earlier one."""
+    """Return the words of a row.
+
+    Results of a failed run are left out, because they may be of an earlier one.
+    """
     name, seconds, outcome = line.split()
     numbers = _numbers(Out(name)) if outcome == "done" else [""] * 4
     return [name, duration(float(seconds)), *numbers, outcome]
@@ -139,7 +142,10 @@ def _numbers(out: Out) -> list[str]:
 
 
 def largest_effort(motion: Motion) -> str:
-    """Return the largest force or torque of a driver; of forces where nothing is driven, or drivers push by nothing."""
+    """Return the largest force or torque of a driver, else of a force.
+
+    Forces count where nothing is driven, or drivers push by nothing.
+    """
     drivers = {name: (driver.effort, driver.effort_unit == "N") for name, driver in motion.drivers.items()}
     forces = {
         name: (force.effort, force.effort_unit == "N")

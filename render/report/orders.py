@@ -1,4 +1,4 @@
-"""Orders of the report: how large the harmonics against the crank are of what shakes the frame and turns the shaft."""
+"""Orders of the report: harmonics of the crank in what shakes the frame and turns the shaft."""
 
 from __future__ import annotations
 

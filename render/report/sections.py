@@ -1,4 +1,4 @@
-"""The sections of a report, each a list of lines of Markdown made from data.json and what stands beside it."""
+"""Sections of a report, each a list of lines of Markdown from data.json and the files beside it."""
 
 from __future__ import annotations
 
@@ -91,7 +91,10 @@ def _last_turn(motion: Motion) -> list[str]:
 
 
 def frame_section(motion: Motion) -> list[str]:
-    """Return the lines on inertia forces on the frame, for bodies in different places along the normal of the plane."""
+    """Return the lines on inertia forces on the frame, for bodies at different heights.
+
+    Heights are along the normal of the plane.
+    """
     shaken = shaking(motion)
     if shaken.mx is None or shaken.my is None:
         return []

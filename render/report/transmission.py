@@ -52,8 +52,9 @@ class Loop:
         return np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
 
     def dead_points(self, time: np.ndarray) -> list[tuple[float, float]]:
-        """Return the time (s) and angle of the crank (rad, 0 .. 2 pi) at each; one on the seam of a period once, at its
-        start.
+        """Return the time (s) and crank angle (rad, 0 .. 2 pi) of each dead point.
+
+        One on the seam of a period counts once, at its start.
         """
         a, b, c = (self.pins[:, k] for k in (0, 1, 2))
         first, second = b - a, c - b
@@ -93,8 +94,9 @@ class Loop:
 
 
 def loops(motion: Motion) -> list[Loop]:
-    """Return all loops of a mechanism whose crank a driver turns against ground, or which forces turn round and
-    round.
+    """Return all loops of a mechanism whose crank a driver or forces turn round and round.
+
+    It turns against ground.
     """
     out = []
     pins: dict[frozenset[str], np.ndarray] = {}
@@ -121,8 +123,9 @@ def loops(motion: Motion) -> list[Loop]:
 
 
 def _driven(motion: Motion) -> list[str]:
-    """Return bodies that a driver turns against ground; of files that do not tell, those whose angle is the
-    driver's.
+    """Return bodies that a driver turns against ground.
+
+    In files that do not tell, they are those whose angle is the driver's.
     """
     out = []
     for driver in motion.drivers.values():
@@ -232,7 +235,7 @@ MOST = 24
 
 
 def marks(motion: Motion) -> list[tuple[float, str]]:
-    """Return times (s) and words, in their order: dead points of driven cranks, and all events but the end."""
+    """Return times (s) and words in order: dead points of driven cranks, and all events but the end."""
     time = np.asarray(motion.time)
     moments = [(at, f"{loop.follower} turns back") for loop in loops(motion) for at, _ in loop.dead_points(time)]
     if motion.period:  # what is at the start of a period is at its end

@@ -1,4 +1,4 @@
-"""How far everything goes: strokes of sliders, ranges of rockers, turns of cranks, spans of points, flights of bodies.
+"""Travel of everything: strokes, ranges of rockers, turns of cranks, spans of points, flights.
 
 Bodies are held by joints until an event releases these.
 """
@@ -25,7 +25,7 @@ WHOLE = 1e-6
 
 
 def travel_section(motion: Motion) -> list[str]:
-    """Return tables of what slides, turns and is traced, and sentences on bodies that nothing ties to ground."""
+    """Return tables of sliding, turning and traced things, and sentences on bodies free of ground."""
     amount = Amounts(motion)
     lines: list[str] = []
     strokes = [
@@ -85,7 +85,10 @@ def _turned(theta: np.ndarray, floor: float) -> str:
 
 
 def _flights(motion: Motion, amount: Amounts) -> list[str]:
-    """Return a sentence for each group of bodies that no joint holds on ground, from the start or from a release on."""
+    """Return a sentence for each group of bodies that no joint holds on ground, at times or for good.
+
+    It counts from the start or from a release on.
+    """
     released, known = releases(motion), set[str]()
     lines = []
     for row, event in [(0, ""), *sorted(set(released.values()))]:

@@ -1,1 +1,1 @@
-"""The showreel: `python -m render showreel` joins the finished films, each under its title, into one MP4."""
+"""The showreel: `python -m render showreel` joins the finished films, with titles, into one MP4."""

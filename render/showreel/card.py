@@ -1,4 +1,4 @@
-"""The title before a film: the film's first picture, dark and out of focus, with its name; then it becomes sharp."""
+"""The title before a film: its first picture, dark and blurred, with its name; then it becomes sharp."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ DARK = 0.34
 BLUR = 1 / 40
 """Fraction of the picture's width."""
 LEFT, MIDDLE = 0.085, 0.5
-"""Where the words stand, as parts of width and height."""
+"""Place of the words, as parts of width and height."""
 LINES = 3
 """The most lines under the name, in a picture that is wider than tall; taller ones have room for more."""
 LETTER = 0.56

@@ -86,8 +86,9 @@ def read_clip(path: Path) -> Clip:
 
 
 def write_subtitles(films: Sequence[Path], chapters: Sequence[Sequence[Clip]], fps: int, target: Path) -> bool:
-    """Write the captions of ``films``, each the last clip of its chapter, as a SubRip file; False, and no file, where
-    none of them has any.
+    """Write the captions of ``films`` as a SubRip file; False, and no file, if none of them has any.
+
+    Each film is the last clip of its chapter.
     """
     captions: list[Caption] = []
     frames = 0
@@ -167,10 +168,10 @@ class Entry:
 
 
 def join(films: Sequence[Entry], preset: Preset, target: Path, scratch: Path) -> list[Clip]:
-    """Write ``target`` from films under their titles, with a chapter for each, and their subtitles beside it as .srt;
-    returns its clips in order.
+    """Write ``target`` from films under their titles, with chapters and subtitles, and return its clips.
 
-    The films' most frequent rate is that of all. Raises UserError naming the film that does not decode.
+    The clips are in order; subtitles stand beside it as .srt. The films' most frequent rate is that of all. Raises
+    UserError naming the film that does not decode.
     """
     for film in films:
         captions_beside(film.path)  # refused now, not after the films are joined
@@ -241,7 +242,7 @@ def _refuse_unlike(row: Sequence[Clip]) -> None:
 
 
 def _concatenate(parts: Sequence[Sequence[Clip]], titles: Sequence[Title], target: Path, scratch: Path) -> None:
-    """Join the films by ffmpeg's concat demuxer, which copies the pictures' packets; players show the chapters.
+    """Join the films by ffmpeg's concat demuxer, which copies packets, with chapters for players.
 
     Sound is encoded anew. Films go in without theirs, whose first packet begins 21 ms early: so much later the demuxer
     would show the pictures.
@@ -287,8 +288,9 @@ def _check(row: Sequence[Clip], films: Sequence[Path], part: Path, name: str, pr
 
 
 def _first_picture(film: Path, whole: bool = False) -> Image:
-    """Return the first picture; ``whole``: the film is decoded to its end. Raises UserError naming the film if that
-    fails.
+    """Return the first picture.
+
+    ``whole``: the film is decoded to its end. Raises UserError naming the film if that fails.
     """
     from PIL import Image
 

@@ -27,8 +27,9 @@ STORIES = ("explain", "loop")
 
 
 def run(preset: Preset, only: str = "", show: str = "", story: str = "explain") -> Path:
-    """Join the finished films of a preset in alphabetical order, or those of ``only`` in its order: stories where they
-    are made, else loops; with ``story`` "loop" loops alone.
+    """Join the finished films of a preset in alphabetical order, or those of ``only`` in its order.
+
+    Stories are joined where they exist, else loops; with ``story`` "loop" loops alone.
 
     Raises UserError if there is none, if one of ``only`` is missing, or if a film does not decode.
     """

@@ -1,4 +1,4 @@
-"""The desk: strikes, tones and noises of all sources, added up as stereo waves, a stem for each source.
+"""The desk: strikes, tones and noises of all sources, added up to stereo, a stem for each source.
 
 A showing is a ring: its last sample is followed by its first, and what still rings at the end rings on at the start. So
 a film that loops has no click, and the sound of a film is that of a showing as often as it is shown.
@@ -41,7 +41,7 @@ OCTAVES = 125.0 * 2.0 ** np.arange(7)
 
 
 class Blows(NamedTuple):
-    """Strikes, (n,) each: film seconds, impulses (N s), how long they last (s), sides from which they are heard."""
+    """Strikes, (n,) each: film seconds, impulses (N s), durations (s), sides from which they are heard."""
 
     film: Array
     impulse: Array
@@ -55,7 +55,7 @@ class Desk:
     def __init__(self, setting: Setting) -> None:
         self.setting = setting
         self.struck: dict[str, list[tuple[str, Blows]]] = defaultdict(list)
-        """By source: which bodies were struck, and how."""
+        """Strikes by source: the bodies that were struck, and how."""
         self._modes: dict[str, Modes] = {}
         self._waves: dict[str, Array] = {}
         self._powers: dict[str, dict[int, Array]] = defaultdict(dict)
@@ -68,8 +68,10 @@ class Desk:
             self.struck[source].append((body, blows))
 
     def tone(self, source: str, phase: Array, level: Array, weights: Sequence[float], side: Array) -> None:
-        """A tone of ``level`` (M + 1,) Pa, with weights of its harmonics; its phase (M + 1,) counts cycles, and closes
-        as the film does."""
+        """A tone of ``level`` (M + 1,) Pa, with weights of its harmonics.
+
+        Its phase (M + 1,) counts cycles, and closes as the film does.
+        """
         speed = np.abs(np.gradient(phase, self.setting.at))
         level = level * self.setting.fade
         heard = {k: weight * level * _audible(k * speed) for k, weight in enumerate(weights, 1)}
@@ -119,8 +121,9 @@ class Desk:
         return octave_noise(self.setting.samples, float(OCTAVES[k]), self.setting.streams + k)
 
     def _blows(self, blows: Sequence[Blows]) -> Spectrum:
-        """Return (2, N // 2 + 1) the spectrum of all strikes of a body; those that come from one place are summed
-        first.
+        """Return the spectrum (2, N // 2 + 1) of all strikes of a body.
+
+        Strikes that come from one place are summed first.
         """
         film, impulse, tau, side = (np.concatenate(row) for row in zip(*blows, strict=True))
         gains = _gains(side)

@@ -43,8 +43,9 @@ def weighting(count: int) -> NDArray[np.complex128]:
 
 
 def energies(spectrum: NDArray[np.complex128], count: int) -> Array:
-    """Return (m,) mean squares of each ms of a ring of so many samples, K-weighted, both channels together, from its
-    spectrum (2, count // 2 + 1).
+    """Return (m,) mean squares of each ms of a ring, K-weighted, both channels together.
+
+    The ring has ``count`` samples and the spectrum (2, count // 2 + 1).
     """
     square = (irfft(spectrum * weighting(count), count) ** 2).sum(axis=0)
     if count < STEP:
@@ -54,9 +55,9 @@ def energies(spectrum: NDArray[np.complex128], count: int) -> Array:
 
 
 def of_energies(energy: Array, showings: int = 1, floor: float = ABSOLUTE) -> float:
-    """Return integrated loudness (LUFS) of a ring with these mean squares a ms, played so many times; -inf of silence.
+    """Return integrated loudness (LUFS) of a ring with these mean squares a ms; -inf of silence.
 
-    ``floor`` is the absolute gate (LUFS), for waves that have no level yet.
+    It is played so many times. ``floor`` is the absolute gate (LUFS), for waves that have no level yet.
     """
     whole = np.tile(energy, showings)
     if len(whole) < BLOCK:
@@ -95,7 +96,7 @@ CHUNK, BESIDE = 16_000, 192
 REACH = 12
 """ms by which the gain is down before and after a peak."""
 TRIES, ENOUGH = 4, 0.1
-"""Where a peak is pressed, energies tell the loudness roughly; so it is measured, and aimed at again (LU)."""
+"""Tolerance (LU): where a peak is pressed, energies tell the loudness roughly, so it is measured and aimed at again."""
 HALVINGS, NEAR = 24, 0.02
 """Most tries, and how near to the loudness is near enough (LU)."""
 MOST, LESS = 36.0, 12.0
@@ -125,8 +126,9 @@ def _upsampled(wave: Array) -> Array:
 
 
 def levelled(spectrum: Spectrum, beside: Spectrum, count: int, wanted: float, ceiling: float, showings: int) -> Array:
-    """Return a ring (2, count) with this spectrum and that of what is heard ``beside`` it, (2, count // 2 + 1) each,
-    together at ``wanted`` LUFS, as far as peaks below ``ceiling`` (1 is full scale) let the former be.
+    """Return a ring (2, count) of this spectrum, at ``wanted`` LUFS together with ``beside``.
+
+    Both spectra are (2, count // 2 + 1). Peaks of the ring stay below ``ceiling`` (1 is full scale).
 
     What is beside it counts: the second gate of the loudness depends on how quiet the rest is.
     """
@@ -149,7 +151,7 @@ def levelled(spectrum: Spectrum, beside: Spectrum, count: int, wanted: float, ce
 def _gain(
     peaks: Array, energy: Array, quiet: Array, wanted: float, plain: float, ceiling: float, showings: int
 ) -> Array:
-    """Return (m,) gain in each ms: ``plain`` without pressing any peak, then with as much more as it takes."""
+    """Return (m,) gain in each ms: ``plain`` below any peak, then with as much more as it takes."""
     low, high, more, gain = -LESS, MOST, 0.0, peaks
     for _ in range(HALVINGS):
         factor = plain * 10 ** (more / 20)
@@ -192,7 +194,7 @@ DECAY, BEFORE = 0.3, 0.005
 WALLS = 10 ** (-12 / 20)
 """Size of what the walls give back, over that of the machine itself."""
 DULL = 4000.0
-"""Above this frequency walls give back less (Hz)."""
+"""Frequency (Hz) above which walls give back less."""
 STREAMS = 100
 """Number of the first of its streams of chance."""
 
@@ -208,7 +210,7 @@ def air_noise(count: int) -> NDArray[np.complex128]:
 
 
 def walls(count: int) -> NDArray[np.complex128]:
-    """Return (2, count // 2 + 1) what the room makes of a ring's spectrum: itself, and what the walls give back."""
+    """Return (2, count // 2 + 1) a ring's spectrum in the room: itself, and the walls' reflections."""
     length = round(1.2 * DECAY * RATE)
     fall = np.exp(-6.9 * np.arange(length) / RATE / DECAY)
     dull = 1 / (1 + (frequencies(length) / DULL) ** 2)
@@ -238,7 +240,7 @@ LOWEST = 28.0
 
 
 def mixed(stems: Mapping[str, Spectrum], count: int, showings: int) -> Array:
-    """Return (2, count) a ring that is played so many times, from spectra of stems (2, count // 2 + 1) in Pa."""
+    """Return (2, count) a ring, played so many times, from spectra of stems (2, count // 2 + 1) in Pa."""
     high = 1 / (1 + (LOWEST / frequencies(count)) ** 8)
     loud = {name: of_energies(energies(stem * high, count), 4, QUIETEST) for name, stem in stems.items()}
     heard = {name: level for name, level in loud.items() if level > QUIETEST}

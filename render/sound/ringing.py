@@ -52,8 +52,9 @@ OTHER = (70e9, 0.01)
 
 
 def matter(material: str) -> Matter:
-    """Return how a material rings; one that is in no family rings as aluminium does, with its own density where it has
-    one.
+    """Return how a material rings.
+
+    One that is in no family rings as aluminium does, with its own density where it has one.
     """
     modulus, loss = next((numbers for word, numbers in _FAMILIES.items() if material.startswith(word)), OTHER)
     known = MATERIALS.get(material)
@@ -105,12 +106,13 @@ class Modes:
     mass: float
     """kg"""
     size: float
-    """About its largest extent (m)."""
+    """Largest extent (m), about."""
     matter: Matter
 
     def response(self, count: int, rate: float) -> Array:
-        """Return (count,) the wave that is heard at ``rate`` samples a second after a N s at sample 0; what is longer
-        is folded in.
+        """Return (count,) the wave that is heard at ``rate`` samples a second after a N s at sample 0.
+
+        A longer wave is folded in.
         """
         length = max(count, math.ceil(rate * 7.0 / float(self.decay.min())))
         t = np.arange(length) / rate
@@ -146,7 +148,7 @@ def _of_piece(piece: Piece) -> Modes:
 
 
 def modes(frequency: Array, made_of: Matter, mass: float, area: float, size: float) -> Modes:
-    """Return modes at these frequencies (Hz) of a body of that mass (kg) and area (m^2), as far as they are heard.
+    """Return audible modes at these frequencies (Hz) of a body of that mass (kg) and area (m^2).
 
     One that is too small or too large to ring where one hears it keeps its lowest or highest, at the end of the range.
     """

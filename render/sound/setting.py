@@ -1,4 +1,4 @@
-"""Setting of all sources of sound: the motion on the film's time, who is heard, and where in the picture things are.
+"""Setting of all sources of sound: the motion on the film's time, and where in the picture they are.
 
 Sources work on series over the times of data.json, and bring them to the film by :meth:`Setting.series`; what happens
 at one moment is at the film seconds that :meth:`Setting.when` gives. Both follow the film's TimeMap and nothing else: a
@@ -30,7 +30,7 @@ RATE = 48_000
 CONTROL = 1000
 """Values a second of whatever changes more slowly than a wave: levels, places, speeds."""
 WIDEST = 0.8
-"""How far to a side what is at the edge is heard, 0 .. 1."""
+"""Side at which things at the edge are heard, 0 .. 1."""
 LONGEST = 300.0
 """Film seconds of a showing that has a sound: all of its waves are in memory at once."""
 FADE = 0.012
@@ -43,7 +43,10 @@ class Setting:
     def __init__(
         self, film: Film, time_map: TimeMap | None = None, within: tuple[float, float] = (-1.0, 1.0), streams: int = 0
     ) -> None:
-        """``time_map`` of another film of the same motion, such as a story; that of the film's clock if not given.
+        """Set up the motion on the film's time.
+
+        ``time_map`` is of another film of the same motion, such as a story; it is that of the film's clock if not
+        given.
 
         ``within`` is where the machine's picture begins and ends in the whole picture, -1 at its left edge, 1 at its
         right; ``streams`` is the number of the first stream of chance of its noises.
@@ -58,8 +61,8 @@ class Setting:
         self.seconds = self.map.seconds
         if self.seconds > LONGEST:
             raise UserError(
-                f"{film.motion.mechanism}: a showing of the film lasts {self.seconds:.0f} s, and sound is made of "
-                f"{LONGEST:.0f} s at most; give the shot fewer seconds_per_turn, or film it with SOUND=off"
+                f"{film.motion.mechanism}: a showing of the film lasts {self.seconds:.0f} s, and sound lasts "
+                f"{LONGEST:.0f} s at most. Give the shot fewer seconds_per_turn, or film it with SOUND=off"
             )
         self.samples = self.heard_samples = max(64, round(self.seconds * RATE))
         """Samples of the ring, and those of the film in it."""
@@ -89,7 +92,7 @@ class Setting:
         return np.minimum(film, self.seconds), index
 
     def continued(self, way: Array) -> Array:
-        """Return a way or phase (M + 1,) that goes on, at the speed around it, where the film jumps to another moment.
+        """Return a way or phase (M + 1,) that goes on where the film jumps, at the speed around it.
 
         Else a jump would be heard as a burst of all that lies between.
         """
@@ -142,7 +145,10 @@ class Setting:
         return 1.0 / sum(1.0 / max(mass, 1e-6) for mass in masses) if masses else 1.0
 
     def slip(self, bodies: tuple[str, str], x: Array, y: Array) -> Array:
-        """Return (T,) speed (m/s) at which the second body slides on the first at places (T,) of the world (m)."""
+        """Return the speed (T,; m/s) at which the second body slides on the first at places (T,; m).
+
+        Places are of the world.
+        """
         first, second = (self._velocity(body, x, y) for body in bodies)
         return np.hypot(*(second - first))
 
@@ -190,7 +196,7 @@ class Setting:
 
     @cached_property
     def _across(self) -> tuple[Array, Array | float, float]:
-        """The world's direction to the right (3,), where the picture's middle is along it (m), and half its width."""
+        """Return the world's direction to the right (3,), the picture's middle along it, half its width (m)."""
         film, mount = self.film, self.film.parts.mount
         right = axes(*angles(film.shot.camera, mount, film.aspect), mount.up)[0]
         along = film.space.machine @ right
@@ -203,9 +209,9 @@ class Setting:
 
     @cached_property
     def fade(self) -> Array:
-        """(M + 1,) 0 where the film cuts to another moment, 1 away from there: tones of two moments have two pitches.
+        """Return (M + 1,) 0 where the film cuts to another moment, 1 away from there.
 
-        Where a period begins anew nothing changes.
+        Tones of two moments have two pitches. Where a period begins anew nothing changes.
         """
         cuts = self._cuts
         if not cuts:

@@ -25,9 +25,10 @@ SOURCES = (impacts, knocks, mesh, gas, motor, sliding, springs)
 
 
 def sound_of(film: Film, time_map: TimeMap | None = None) -> Array:
-    """Return (2, n) the sound of a film at 48 kHz, 1 being full scale: that of a showing, as often as it is shown.
+    """Return (2, n) the sound of a film at 48 kHz, 1 being full scale.
 
-    With a ``time_map`` it is that of another film of the same motion, once.
+    It is the sound of a showing, as often as that is shown. With a ``time_map`` it is that of another film of the same
+    motion, once.
     """
     setting = Setting(film, time_map)
     if time_map is not None:
@@ -39,7 +40,7 @@ def sound_of(film: Film, time_map: TimeMap | None = None) -> Array:
 
 
 def stems_of(setting: Setting) -> dict[str, Spectrum]:
-    """Return (2, N // 2 + 1) the spectrum of what each source of a machine is heard as in a showing (Pa at 1 m)."""
+    """Return the spectrum (2, N // 2 + 1) of each source of a machine in a showing (Pa at 1 m)."""
     desk = Desk(setting)
     for source in SOURCES:
         if source.NAME not in setting.film.shot.sound.without:
@@ -50,7 +51,7 @@ def stems_of(setting: Setting) -> dict[str, Spectrum]:
 # The sound of machines beside each other: each where its picture is, and as loud beside the other as it is.
 
 STREAMS = 100
-"""From the streams of chance of a machine to those of the next: equal noises would be heard as one in the middle."""
+"""Distance of the streams of chance of two machines: equal noises would be heard as one in the middle."""
 
 
 class Heard(NamedTuple):
@@ -59,11 +60,13 @@ class Heard(NamedTuple):
     film: Film
     time_map: TimeMap
     within: tuple[float, float]
-    """Where its picture begins and ends in the whole one, -1 at the left edge, 1 at the right."""
+    """Start and end of its picture in the whole one, -1 at the left edge, 1 at the right."""
 
 
 def sound_of_all(machines: Sequence[Heard]) -> Array:
-    """Return (2, n) the sound of machines whose time maps are of one length, at 48 kHz, 1 being full scale.
+    """Return (2, n) the sound of machines at 48 kHz, 1 being full scale.
+
+    Their time maps are of one length.
 
     Sources of one kind are balanced and levelled as one, so the louder machine is the louder one in the film.
     """

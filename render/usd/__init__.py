@@ -1,4 +1,7 @@
-"""OpenUSD: ``python -m render usd NAME`` writes the scene of the GLB as a stage: .usdc, or .usdz for Quick Look."""
+"""OpenUSD: ``python -m render usd NAME`` writes the scene of the GLB as .usdc, or .usdz.
+
+Quick Look reads .usdz.
+"""
 
 from __future__ import annotations
 
@@ -18,14 +21,15 @@ from shared.stage.paths import Out
 from shared.stage.stages import Stage, key_of
 
 FORMATS = {"usd": ".usdc", "usdz": ".usdz"}
-"""By name: the ending of the file."""
+"""Endings of the file by name."""
 FIRST_TIME = struct.pack("<HH", 0, 0x21)
 """Midnight, and 1 January 1980, as ZIP has them."""
 
 
 def run(name: str, form: str = "usd") -> None:
-    """Write out/<name>/export/<name>.usdc, or .usdz. Raises UserError where motion, parts, shot or OpenUSD are missing,
-    and for a format that is neither.
+    """Write out/<name>/export/<name>.usdc, or .usdz.
+
+    Raises UserError if motion, parts, shot or OpenUSD are missing, and for a format that is neither.
     """
     if form not in FORMATS:
         raise UserError(
@@ -71,7 +75,7 @@ def content(stage: Any, name: str, form: str) -> bytes:
 
 
 def without_times(archive: bytes) -> bytes:
-    """Return a ZIP archive with the times of its files set to the first that the format knows, 1 January 1980.
+    """Return a ZIP archive with all times set to the first that the format knows, 1 January 1980.
 
     They stand in the header of each file (bytes 10 to 13) and in the central directory (12 to 15).
     """

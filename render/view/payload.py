@@ -130,8 +130,10 @@ def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bo
 
 
 def skeleton(moving: Moving) -> dict[str, Any]:
-    """Return strokes {points (2 n,), closed, ink, fill, alpha, width, order, dash, sign, carrier, shapes (k, 2 n)}, in
-    the order in which they are drawn; names {text, at, clearance, ink, carrier}; carriers {kind, ends: [{body, x, y}]}.
+    """Return strokes, names and carriers of the skeleton.
+
+    Strokes {points (2 n,), closed, ink, fill, alpha, width, order, dash, sign, carrier, shapes (k, 2 n)}, in the order
+    in which they are drawn; names {text, at, clearance, ink, carrier}; carriers {kind, ends: [{body, x, y}]}.
     """
     return {
         "unit": moving.unit,

@@ -37,8 +37,9 @@ def version_of(browser: str) -> str:
 
 
 def stage_of(out: Out, version: str) -> Stage:
-    """Return the picture's stage: the page's bytes, the browser's version and the script that takes the picture
-    decide.
+    """Return the picture's stage.
+
+    The page's bytes, the browser's version and the script that takes the picture decide.
     """
     scripts = [PAGE / "browser" / name for name in ("picture.cjs", "browser.cjs")]
     key = key_of(out.view, version, *scripts, *(PAGE / name for name in LOCKED), LOOKS)
@@ -51,7 +52,10 @@ def picture_of(out: Out) -> Path:
 
 
 def take_picture(out: Out, browser: str) -> None:
-    """Write view.png. Raises UserError with what the page or the browser complained of; then there is none."""
+    """Write view.png.
+
+    Raises UserError with what the page or the browser complained of; then there is none.
+    """
     picture_of(out).unlink(missing_ok=True)
     with tempfile.TemporaryDirectory(prefix="mbsd-page-") as folder:
         image = Path(folder) / "view.png"

@@ -49,8 +49,9 @@ class Meshes:
         self._known: dict[str, int] = {}
 
     def add(self, shape: Shape) -> tuple[int, list[float]]:
-        """Return the number of the mesh of a shape (positions, normals, corners), and where its lowest corner is
-        (m).
+        """Return the number of the mesh of a shape, and where its lowest corner is (m).
+
+        The shape is positions, normals and corners.
         """
         positions, normals, corners = shape
         low = positions.min(axis=0)
@@ -119,7 +120,7 @@ LARGER = 2.4
 
 
 def looks_of(look: Look, stands: bool) -> dict[str, Any]:
-    """Return ``dark`` and ``light``: how a page in these colours shows a machine that was filmed in ``look``."""
+    """Return ``dark`` and ``light``: pages in these colours for a machine that was filmed in ``look``."""
     return {
         theme: as_shown(look if look.other is None or look.dark == (theme == "dark") else LOOKS[look.other], stands)
         for theme in ("dark", "light")
@@ -141,7 +142,7 @@ def as_shown(look: Look, stands: bool) -> dict[str, Any]:
 
 
 def _box(box: Softbox, times: float) -> list[Any]:
-    """Return a painted lamp with the radiance of its power and size; one that is too bright is larger instead."""
+    """Return a painted lamp with the radiance of its power and size; a too bright one is larger instead."""
     wide, high = box.size
     radiance = times * box.power / (math.pi * wide * high)
     larger = min(LARGER, math.sqrt(max(1.0, radiance / BRIGHTEST)))
@@ -232,7 +233,10 @@ def solid(film: Film) -> dict[str, Any]:
 
 
 def sawn_of(film: Film) -> dict[tuple[str, str], dict[str, Any]]:
-    """Return by body and piece how the shot's section cuts it; nothing where the page's own slider does the same."""
+    """Return by body and piece how the shot's section cuts it.
+
+    There is nothing where the page's own slider does the same.
+    """
     section = section_of(film.shot.section)
     if section == Section(front=section.front):
         return {}

@@ -146,8 +146,8 @@ def refuse_open(host: str, plain: bool) -> None:
     if plain or address.certificates() or is_loopback(host):
         return
     raise UserError(
-        f"HOST={host} can be reached by others, and a worker runs what it is sent: make certificates, and give their "
-        "folder as CLUSTER_TLS=folder, or give --plain where nobody else can reach that network"
+        f"HOST={host} can be reached by others, and a worker runs what it is sent. Make certificates and give their "
+        "folder as CLUSTER_TLS=folder, or give --plain if nobody else can reach that network"
     )
 
 

@@ -1,4 +1,4 @@
-"""Deal of a stage: orders go to workers, which request the files that they lack by content and report back."""
+"""Deal of a stage: orders go to workers, which request missing files by content and report back."""
 
 from __future__ import annotations
 

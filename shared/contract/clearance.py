@@ -28,10 +28,10 @@ class PairClearance(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     proven: float
     """The gap is never below this (m)."""
     time: float | None
-    """When the least gap occurs (s); null if it does not depend on the pose."""
+    """Time at which the least gap occurs (s); null if it does not depend on the pose."""
     proof: Proof
     poses: int
-    """How many poses were measured."""
+    """Number of poses that were measured."""
 
 
 class Clearance(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):

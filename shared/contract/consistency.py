@@ -183,8 +183,8 @@ def _refuse_ragged(motion: Motion, path: Path | str) -> None:
         before, now = motion.time[index - 1 : index + 1]
         if now < before or (now == before and now not in happened):
             raise UserError(
-                f"{path}: time[{index}] = {now} does not come after the value before it, and no event has that time; "
-                "only right before and after an event may two rows share a time"
+                f"{path}: time[{index}] = {now} does not come after the value before it, and no event has that time. "
+                "Only right before and after an event may two rows share a time"
             )
         if now == before:
             _refuse_leap(motion, index, path)

@@ -1,4 +1,4 @@
-"""Geometry that follows from files: belts round two pulleys, rods between two places, and reactions on what moves."""
+"""Geometry that follows from files: belts round two pulleys, rods between two places, and reactions."""
 
 from __future__ import annotations
 
@@ -118,9 +118,9 @@ LONG, PROUD = 1.6, 1.06
 ROLLER, BOLT = 0.9, 0.35
 """Radii of a chain's roller and of its pin."""
 PLATES, PIN, PLATE = 1.5, 2.1, 0.42
-"""How far a chain's plates lie from the middle, half a pin's length, a plate's radius."""
+"""Distance of a chain's plates from the middle, half a pin's length, a plate's radius."""
 APART = 1.1
-"""How far the strands of a crossed belt pass over and under each other."""
+"""Distance by which the strands of a crossed belt pass over and under each other."""
 
 
 def half_width(radius: float, chain: bool) -> float:

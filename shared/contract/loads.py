@@ -55,7 +55,7 @@ class Acts(Strict, kw_only=True):
     """m"""
     y: Series
     torque: Series
-    """On the second body about (x, y) (N m)."""
+    """Torque on the second body about (x, y) (N m)."""
 
 
 class Action(Strict, kw_only=True):
@@ -81,7 +81,7 @@ class GasMotion(Strict, kw_only=True):
     crank: str | None = None
     """The body by whose angle the pressure repeats; null of gas without a cycle."""
     crank_angle: Series | None = None
-    """How far it has turned, in its own direction, since a top dead centre at which the cylinder fires (rad)."""
+    """Turn, in its own direction, since a top dead centre at which the cylinder fires (rad)."""
     cycle_angle: Positive | None = None
     """After which the pressure repeats (rad)."""
     displaced: Positive | None = None
@@ -97,7 +97,7 @@ class HydraulicMotion(Strict, kw_only=True):
     """Absolute (Pa)."""
     pressure_b: Series
     flow_a: Series
-    """From the valve into the chamber (m^3/s)."""
+    """Flow from the valve into the chamber (m^3/s)."""
     flow_b: Series
     valve: Series
     """Its opening, -1 .. 1; above 0 the supply leads into chamber A."""
@@ -156,13 +156,13 @@ class ContactMotion(Strict, kw_only=True):
     kind: str
     bodies: tuple[str, str]
     x: Series
-    """Where its second marker is (m)."""
+    """Position of its second marker (m)."""
     y: Series
     fx: Series
     """Force on its second body, world axes (N)."""
     fy: Series
     torque: Series
-    """On its second body about (x, y) (N m)."""
+    """Torque on its second body about (x, y) (N m)."""
     gap: Series
     """m, or rad of angles; 0 where it is closed."""
     rate: Series

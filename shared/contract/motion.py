@@ -53,7 +53,7 @@ class Vibration(Strict, kw_only=True):
     """Turns of the crank in a cycle."""
     order: Series
     harmonics: dict[str, Harmonics]
-    """By quantity: the shaking force, moment and couple, efforts of drivers, reactions of joints with ground."""
+    """Spectra by quantity: shaking force, moment and couple, efforts of drivers, reactions of joints with ground."""
 
 
 _FIRST = {
@@ -73,7 +73,7 @@ _THIRD = _SECOND | {
     "acts": "where a joint or contact acts with fx, fy and the torque of acts; null: at (x, y) with its own torque"
 }
 CONVENTIONS_OF = {1: _FIRST, 2: _SECOND, 3: _THIRD}
-"""By version of the file."""
+"""Conventions by version of the file."""
 
 
 Colour = Annotated[str, msgspec.Meta(pattern="^#[0-9a-f]{6}$")]
@@ -96,7 +96,7 @@ class BodyMotion(Strict, kw_only=True):
     """Height of its layer (m); null where there are no parts yet, and of bodies without solids."""
     mass: NonNegative
     mass_from: Literal["mechanism", "parts", "estimate"] = "parts"
-    """Where mass, com and inertia are from."""
+    """Source of mass, com and inertia."""
     com: tuple[float, float]
     inertia: NonNegative
     colour: Colour = "#66717b"
@@ -183,11 +183,11 @@ class Couple(Strict, kw_only=True):
     about: float
     """Place along that normal (m), halfway between the outermost bodies."""
     reach: NonNegative
-    """How far these are apart (m)."""
+    """Distance between these (m)."""
     mx: Series
-    """About the x axis."""
+    """Couple about the x axis."""
     my: Series
-    """About the y axis."""
+    """Couple about the y axis."""
 
 
 class EventMark(Strict, kw_only=True):

@@ -99,7 +99,7 @@ class Piece(Strict, kw_only=True):
     triangles: Count
     stl_sha256: str
     holds: dict[str, Held] = {}
-    """By the names of forces: springs, dampers and actuators that have an end here."""
+    """Studs by the names of forces: springs, dampers and actuators that have an end here."""
     buy: str = ""
     """Name in a shop, such as "circlip 8x0.8 DIN 471"; empty if the piece is to be made."""
     rolls: Rolling | None = None
@@ -137,7 +137,7 @@ class Parts(Strict, kw_only=True):
     units: dict[str, str] = msgspec.field(default_factory=lambda: dict(PARTS_UNITS))
     provenance: Provenance
     mount: Mount = Mount()
-    """How ground stands in the world; files without it lie on a desk."""
+    """Stand of ground in the world; files without it lie on a desk."""
     bodies: dict[str, BodyParts]
     without_solids: list[str] = []
     """Bodies of mechanism.py that are left out here."""

@@ -20,7 +20,7 @@ class Signal(NamedTuple):
     light: str
     """``#rrggbb`` on light paper."""
     dark: str
-    """On dark paper, and in films."""
+    """Colours on dark paper, and in films."""
     head: Head = "solid"
 
 

@@ -23,7 +23,7 @@ KNOTS = 240
 STRAY = 0.02
 """A spline that strays farther from the outline (mm) is none of it: the disc is a polygon then."""
 CHORD = 0.005
-"""How far that polygon strays from the outline (mm)."""
+"""Largest distance of that polygon from the outline (mm)."""
 SHARP = 2.0
 """Teeth that are rounded more tightly than this (mm) make it a polygon, too: the kernel cannot chamfer such a spline,
 and meshes it with ten times the triangles.

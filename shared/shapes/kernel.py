@@ -1,4 +1,4 @@
-"""Questions to the CAD kernel: its failures, shapes tried in turn, boxes found quickly, and holes counted."""
+"""Questions to the CAD kernel: its failures, shapes tried in turn, quick boxes and counted holes."""
 
 from __future__ import annotations
 

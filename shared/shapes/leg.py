@@ -28,7 +28,7 @@ CALF = (
     (-36, 2), (-26, -40), (18, -54), (85, -44), (180, -38), (290, -32), (370, -34), (418, -30), (440, 2), (422, 34),
     (370, 36), (300, 48), (215, 70), (140, 78), (75, 68), (20, 48), (-22, 36),
 )  # fmt: skip
-"""From the knee at the origin to the ankle at (405, 0), its muscle up."""
+"""Outline from the knee at the origin to the ankle at (405, 0), its muscle up."""
 FOOT = (
     (-34, 0), (-22, -36), (8, -70), (22, -96), (44, -98), (58, -70), (76, -24), (104, 22), (134, 58), (142, 104),
     (120, 146), (84, 178), (52, 190), (32, 178), (26, 130), (16, 70), (-4, 40), (-24, 26),
@@ -203,11 +203,11 @@ TUBE, STAY = 17.0, 9.0
 SHELL = 82.0
 """Radius of the ring round what bears the crank on the base."""
 SEAT = 0.80
-"""Where the top tube meets the seat tube, as a part of the way from bracket to hip."""
+"""Place where the top tube meets the seat tube, as a part of the way from bracket to hip."""
 FLYWHEEL = ((430.0, -40.0), 215.0)
 """Axle of an ergometer's wheel, and its radius."""
 FEET = ((-300.0, -312.0), (664.0, -312.0))
-"""Where an ergometer stands."""
+"""Places on which an ergometer stands."""
 
 
 def wheel(name: str, at: Point, low: float, thick: float) -> list[Solid]:

@@ -129,7 +129,7 @@ TORSO: tuple[Section, ...] = (
 HEAD: tuple[Section, ...] = ((655, -14, 88, 66), (700, -12, 94, 74), (748, -9, 96, 76))
 NECK: tuple[Section, ...] = ((488, 6, 50, 54), (550, 2, 46, 48), (650, -2, 46, 46))
 NAPE = 7.0
-"""Where a neck bends, beyond the shoulder."""
+"""Distance beyond the shoulder at which a neck bends (mm)."""
 FOOT: tuple[Section, ...] = (
     (-50, -38, 31, 29), (-12, -27, 42, 37), (38, -37, 32, 41), (95, -47, 22, 44), (158, -54, 15, 43),
 )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Exceptions that a stage reports as a sentence instead of a traceback, and suggestions for an unknown name."""
+"""Exceptions that a stage reports as a sentence without a traceback, and hints for unknown names."""
 
 from __future__ import annotations
 

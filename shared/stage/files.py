@@ -1,4 +1,4 @@
-"""Files written whole (a temporary file beside the target, then a rename), locked by one process, and hashed."""
+"""Files written whole (a temporary file, then a rename), locked by one process, and hashed."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ PROGRAMS = {
 
 
 SBIN = "/usr/sbin:/usr/local/sbin:/sbin"
-"""Where sshd is, which a user's PATH need not have."""
+"""Folders of sshd, which a user's PATH need not have."""
 
 
 def program(name: str) -> str | None:

@@ -1,4 +1,4 @@
-"""Place in which a command works: the clone, or the nearest folder of the user with its settings, ``mbsd.toml``."""
+"""Place in which a command works: the clone, or the user's nearest folder with ``mbsd.toml``."""
 
 from __future__ import annotations
 

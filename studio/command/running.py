@@ -48,7 +48,7 @@ CONDITIONS = {
     "--if-needed=proof": "of full size, only if the motion needs their masses",
     "--or-none": "if there can be any",
 }
-"""When a stage makes something, by the word that asks for it."""
+"""Conditions under which a stage makes something, by the word that asks for it."""
 
 
 def plan_line(words: Sequence[str]) -> str:

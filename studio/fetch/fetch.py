@@ -22,7 +22,7 @@ from shared.stage.paths import out_root, refuse_links
 from studio.fetch.transfer import KINDS, Transfer, program, shell_program, transfer
 
 FOLDER = "mbsd"
-"""Where the project is on the other machine, below the home folder."""
+"""Folder of the project on the other computer, below the home folder."""
 HOST = re.compile(r"(?:[\w.+-]+@)?(?:[A-Za-z0-9_][\w.-]*|\[[0-9A-Fa-f:.]+(?:%\w+)?\])", re.ASCII)
 PATH = re.compile(r"[\w./~+=,@-]+")
 WAIT = 10.0

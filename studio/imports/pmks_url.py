@@ -24,7 +24,7 @@ UNITS = (
     ("a centimetre", 0.01, 1e-3, 1e-4),
     ("a metre", 1.0, 1.0, 1.0),
 )
-"""By the unit of length: its name, m, kg of a mass (lb, g, kg), kg m^2 of an inertia (lb in^2, kg cm^2, kg m^2)."""
+"""Units by that of length: its name, m, kg of a mass (lb, g, kg), kg m^2 of an inertia (lb in^2, kg cm^2, kg m^2)."""
 POUND = 4.4482216152605
 """N"""
 GRAVITY = (0.0, -9.81)

@@ -122,7 +122,7 @@ def difference(sketch: Sketch, m: Mechanism) -> str:
         )
     if sketch.inputs and sketch.inputs != freedom:
         return (
-            f"the inputs of the file ({sketch.inputs}) move all of it there, and this mechanism has {freedom} "
-            "degrees of freedom: something was left out or misread, or is loose in the file"
+            f"the inputs of the file ({sketch.inputs}) move all of it there, but this mechanism has {freedom} "
+            "degrees of freedom. Something was left out or misread, or is loose in the file"
         )
     return ""

@@ -57,7 +57,7 @@ class Slide:
     angle: float
     turns: bool = False
     along: Place | None = None
-    """Where the slot lies on ``first``, if not at ``place``."""
+    """Place of the slot on ``first``, if not at ``place``."""
 
 
 @dataclass

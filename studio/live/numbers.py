@@ -22,7 +22,7 @@ NAME = re.compile(r"([A-Za-z_]\w*)((?:\[\d+\])*)")
 LOW, HIGH = 0.25, 2.0
 """Multiples of a value that are the ends of its range."""
 LARGEST = 1e100
-"""Beyond it a number has no slider; below its inverse it counts as 0."""
+"""Size beyond which a number has no slider; below its inverse it counts as 0."""
 DIGITS = 4
 """Number of digits of a number that no hand has typed."""
 PARTS = 1000

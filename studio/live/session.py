@@ -45,7 +45,7 @@ class Session:
         self._opened: dict[str, float] = {}
         """Numbers with which the files are being solved."""
         self._began = 0.0
-        """When the process was begun that solves them (s since the epoch)."""
+        """Time at which the process that solves them was begun (s since the epoch)."""
         self.stages = Stages(name, nursery.mark, self.board.line, self._parts_made)
         self.writer = Writer(name, nursery)
         self.fit = Fit(name, nursery, self.board.tell, self._fitted, self._best_so_far)

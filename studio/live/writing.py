@@ -1,4 +1,4 @@
-"""Writer of numbers into mechanism.py: it replaces literals, checks the new Params, and loses no save of the author."""
+"""Writer of numbers into mechanism.py: it replaces literals, checks Params and loses no save."""
 
 from __future__ import annotations
 

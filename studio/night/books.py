@@ -39,7 +39,7 @@ class Books:
         self._due = True
         self._written = 0.0
         self._told: float | None = None
-        """When the forecast was stated last (monotonic)."""
+        """Time at which the forecast was stated last (monotonic)."""
         self._again = REFINED
         self._said: set[tuple[str, str]] = set()
 

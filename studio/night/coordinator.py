@@ -52,7 +52,7 @@ class Coordinator:
         self.books = Books(asked, run, log, board)
         self._tries: dict[tuple[str, str], int] = {}
         self._elsewhere: dict[str, float] = {}
-        """By mechanism that another run has, the moment of the next try."""
+        """Moment of the next try, by mechanism that another run has."""
         self._looked = time.monotonic()
 
     def go(self) -> bool:

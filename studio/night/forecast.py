@@ -141,7 +141,7 @@ class Forecast:
     films: int
     pictures: int
     seconds: float | None
-    """Until the last one; None where no picture was measured."""
+    """Seconds until the last one; None where no picture was measured."""
     unknown: int
     """Films among them of which no picture was measured; they count like the others on average."""
     unread: int

@@ -120,7 +120,7 @@ class Claims:
 
     def __init__(self) -> None:
         self._held: dict[str, tuple[int, int]] = {}
-        """By mechanism, the handle of its lock and the number of its steps that run."""
+        """Handle of the lock and number of running steps, by mechanism."""
 
     def claim(self, name: str) -> str:
         """Begin a step of a mechanism; else return who works on it: ``process 123 on machine``."""

@@ -1,4 +1,4 @@
-"""``mbsd status`` and ``mbsd stop``: the state of every film, from files alone, and the end of every run."""
+"""``mbsd status`` and ``mbsd stop``: the state of every film, from files alone, and the end of runs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Entries of the site: what it says of each mechanism, its purposes as filters, and the files that it offers."""
+"""Entries of the site: words on each mechanism, its purposes as filters, and the files it offers."""
 
 from __future__ import annotations
 

@@ -30,6 +30,9 @@ def of_print(out: Out, scratch: Path, again: Again) -> list[Finding]:
         return [Finding(what, "missing", "no record says for which bed they are; lay them out again")]
     if changed := outdated_by(out, out.print_folder / "pieces.md"):
         return [Finding(what, "outdated", f"{' and '.join(changed)} changed since")]
+    parts = files.compare("parts.json", out.parts, scratch / "parts" / "parts.json")
+    if parts.verdict == "outdated":  # of other inputs, so the plates are as well
+        return [Finding(what, parts.verdict, parts.detail)]
     again("mechanisms", "print", out.name, f"--bed={notes['bed']}", f"--gap={notes['gap']}")
     here, there = out.print_folder, scratch / "print"
     names = sorted({path.name for folder in (here, there) for path in folder.iterdir() if path.is_file()})

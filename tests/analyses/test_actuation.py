@@ -87,7 +87,7 @@ def test_a_simulated_motion_needs_no_effort() -> None:
     np.testing.assert_allclose(made.efforts["motor"], 0.0, atol=1e-9)
 
 
-def test_what_actuators_cannot_do_is_told() -> None:
+def test_tasks_beyond_actuators_are_reported() -> None:
     m = Mechanism("arm", gravity=(0.0, -G))
     upper, lower = m.bar("upper", 0.4, mass=1.0), m.bar("lower", 0.3, mass=1.0)
     m.revolute("shoulder", m.ground.origin, upper.start)

@@ -50,7 +50,7 @@ def test_a_cart_rests_if_a_spring_holds_it_and_runs_away_if_not(seed: int) -> No
         _loose_chain(seed, held=False).equilibrium()
 
 
-def test_what_runs_away_may_have_an_unstable_equilibrium_which_is_named_and_found() -> None:
+def test_runaways_may_have_an_unstable_equilibrium_which_is_named_and_found() -> None:
     """A block on a slope in a frame that turns: m w^2 x cos(slope)^2 = m g sin(slope) cos(slope)."""
     slope, rate = 0.3, 2.0
     m = Mechanism("centrifuge")

@@ -143,7 +143,7 @@ def test_a_frame_of_redundant_bars_stands() -> None:
     np.testing.assert_allclose(total, [0.0, 3.0 * G], atol=1e-9)
 
 
-def test_what_falls_has_no_equilibrium() -> None:
+def test_falling_bodies_have_no_equilibrium() -> None:
     m = Mechanism("free")
     m.body("stone", 2.0, inertia=0.1)
     with pytest.raises(EquilibriumError, match=r"free: no equilibrium .* 'stone' is still driven by 19.6 N"):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 
 import numpy as np
@@ -11,6 +10,7 @@ from scipy.linalg import expm, logm
 from scipy.special import jn_zeros
 
 from mbsd import Mechanism, MobilityError, ModelError, SingularPoseError, constant_rate, harmonic
+from tools.models import linkages
 
 G = 9.81
 
@@ -85,33 +85,6 @@ def test_mass_spring_damper(damping: float) -> None:
         assert [mode.damping_ratio for mode in linear.modes] == [1.0, 1.0]
 
 
-def test_a_row_of_masses_has_the_frequencies_of_the_chain() -> None:
-    """omega_k = 2 sqrt(k / m) sin(k pi / (2 N + 2)), shape sin(k j pi / (N + 1))."""
-    count, m = 6, Mechanism("row", gravity=None)
-    places = [m.ground.at(0.0, 0.0)]
-    for k in range(count):
-        block = m.body(f"block {k}", 0.5, inertia=0.01)
-        m.prismatic(f"rail {k}", m.ground.origin, block.origin)
-        m.start_near(**{f"block {k}": (k + 1.05, 0.0, 0.0)})
-        places.append(block.origin)
-    places.append(m.ground.at(count + 1.0, 0.0))
-    for k, (i, j) in enumerate(itertools.pairwise(places)):
-        m.spring(f"spring {k}", i, j, 80.0, free_length=1.0)
-    linear = m.linearise()
-    order = np.arange(1, count + 1)
-    np.testing.assert_allclose(
-        2 * math.pi * linear.frequencies,
-        2 * math.sqrt(80.0 / 0.5) * np.sin(order * math.pi / (2 * count + 2)),
-        rtol=1e-8,
-    )
-    for k, mode in enumerate(linear.modes, start=1):
-        shape = np.array([mode.of(f"block {j}")[0] for j in range(count)])
-        wanted = np.sin(k * order * math.pi / (count + 1))
-        largest = np.argmax(np.abs(shape))
-        np.testing.assert_allclose(shape, wanted / wanted[largest] * shape[largest], atol=1e-7)
-        assert np.abs(shape).max() == pytest.approx(1.0)
-
-
 def hanging_chain(count: int) -> Mechanism:
     m = Mechanism("chain", gravity=(0.0, -G))
     before = m.ground.origin
@@ -170,14 +143,10 @@ def test_a_pendulum_on_a_turning_arm() -> None:
 
 
 def spring_four_bar() -> Mechanism:
-    m = Mechanism("four-bar", gravity=(0.0, -G))
-    crank, coupler, rocker = m.bar("crank", 0.3, 1.0), m.bar("coupler", 0.9, 0.5), m.bar("rocker", 0.7, 2.0)
-    m.revolute("A", m.ground.at(0, 0), crank.start)
-    m.revolute("B", crank.end, coupler.start)
-    m.revolute("C", coupler.end, rocker.end)
-    m.revolute("D", m.ground.at(0.8, 0), rocker.start)
-    m.spring("spring", coupler.at(0.4, 0.1), m.ground.at(0.9, 0.5), 300.0, damping=12.0, free_length=0.1)
-    m.start_near(crank=50, coupler=20, rocker=80)
+    gravity = (0.0, -G)
+    m = linkages.four_bar(0.8, 0.3, 0.9, 0.7, (20, 80), masses=(1.0, 0.5, 2.0), law=None, at=50, gravity=gravity)
+    at = m.bodies["coupler"].at(0.4, 0.1)
+    m.spring("spring", at, m.ground.at(0.9, 0.5), 300.0, damping=12.0, free_length=0.1)
     return m
 
 
@@ -277,7 +246,7 @@ def test_wrong_arguments_are_refused() -> None:
 
 def test_a_linearisation_prints_its_modes() -> None:
     text = str(spring_four_bar().linearise())
-    assert "four-bar: 1 coordinates (crank.theta), stable" in text
+    assert "four_bar: 1 coordinates (crank.theta), stable" in text
     assert "Hz" in text
     assert "damping ratio" in text
 

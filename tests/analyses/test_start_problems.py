@@ -1,4 +1,4 @@
-"""What does not close at the start is a finding of a check, with its remedy."""
+"""Findings of a check on a start that does not close, with their remedies."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ G = 9.80665
 pytestmark = pytest.mark.filterwarnings("ignore::mbsd.ModelWarning")
 
 
-def beside(mass: float, stiffness: float = 0.0, start: float = -60.0) -> Mechanism:
+def two_bodies(mass: float, stiffness: float = 0.0, start: float = -60.0) -> Mechanism:
     """A point mass of 0.1 kg on a pin, and an eccentric wheel of ``mass`` (kg), with a torsion spring (N m/rad)."""
     m = Mechanism("two")
     m.revolute("O", m.ground.origin, m.body("bob", 0.1, com=(0.1, 0.0)).origin)
@@ -27,7 +27,7 @@ def beside(mass: float, stiffness: float = 0.0, start: float = -60.0) -> Mechani
 @pytest.mark.parametrize("stiffness", [0.0, 1e9])
 @pytest.mark.parametrize("mass", [1e-6, 1.0, 1e6])
 def test_a_pendulum_hangs_straight_down(mass: float, stiffness: float, nearest: bool) -> None:
-    rest = beside(mass, stiffness).equilibrium(nearest=nearest)
+    rest = two_bodies(mass, stiffness).equilibrium(nearest=nearest)
     assert rest.body("bob").theta == pytest.approx(-math.pi / 2, abs=1e-12)
     assert rest.joint("O").reaction[1] == pytest.approx(0.1 * G, rel=1e-8)
     assert rest.stability == "stable"
@@ -35,13 +35,13 @@ def test_a_pendulum_hangs_straight_down(mass: float, stiffness: float, nearest: 
 
 @pytest.mark.parametrize("mass", [1e-6, 1.0, 1e6])
 def test_one_that_stands_on_its_head_is_unstable(mass: float) -> None:
-    m = beside(mass, 1e9, start=88.0)
+    m = two_bodies(mass, 1e9, start=88.0)
     assert m.equilibrium(nearest=True).stability == "unstable"
 
 
 @pytest.mark.parametrize(("mass", "stiffness"), [(1e-6, 1e9), (1.0, 1e9), (1e6, 1e-3)])
 def test_each_has_its_own_rate(mass: float, stiffness: float) -> None:
-    m = beside(mass, stiffness)
+    m = two_bodies(mass, stiffness)
     rest = m.equilibrium()
     inertia = mass * (0.1 + 0.2**2)
     pull = stiffness + mass * G * 0.2 * math.sin(-rest.body("wheel").theta)
@@ -49,8 +49,8 @@ def test_each_has_its_own_rate(mass: float, stiffness: float) -> None:
     assert [mode.omega for mode in m.modes()] == pytest.approx(rates, rel=1e-6)
 
 
-def test_what_nothing_pulls_back_is_free_beside_it() -> None:
-    m = beside(1.0)
+def test_bodies_without_a_restoring_force_are_free_beside_it() -> None:
+    m = two_bodies(1.0)
     m.change("wheel", com=(0.0, 0.0))
     free, swinging = m.modes()
     assert free.omega == 0.0
@@ -60,7 +60,7 @@ def test_what_nothing_pulls_back_is_free_beside_it() -> None:
 
 def test_a_load_that_no_actuator_takes_is_told_beside_a_heavy_body() -> None:
     """The motor of the wheel cannot turn the pendulum, whose load is 1e-8 of the wheel's."""
-    m = beside(1e7)
+    m = two_bodies(1e7)
     for name in ("bob", "wheel"):
         m.drive_angle(f"motor of {name}", name, constant_rate(1.0))
     motion = m.sweep(0.5, steps=5)

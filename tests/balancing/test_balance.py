@@ -55,7 +55,7 @@ def test_a_four_bar_is_force_balanced_as_berkof_and_lowen_say() -> None:
     ],
     ids=str,
 )
-def test_what_is_promised_is_what_the_solver_finds_with_the_weights(norm: Any, of: Any) -> None:
+def test_promised_values_are_those_of_the_solver_with_the_weights(norm: Any, of: Any) -> None:
     m = four_bar()
     for k, body in enumerate(("crank", "coupler", "rocker")):
         m.change(body, z=0.02 * k)
@@ -163,7 +163,7 @@ def test_the_flywheel_of_a_crank_with_an_eccentric_mass() -> None:
     assert np.ptp(omega) / omega.mean() == pytest.approx(0.02, rel=0.02)
 
 
-def test_what_cannot_be_balanced_is_refused() -> None:
+def test_motions_that_cannot_be_balanced_are_refused() -> None:
     m = four_bar()
     sol = m.sweep(steps=30)
     [weight] = weights(m, "crank")

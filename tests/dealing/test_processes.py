@@ -7,9 +7,8 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +18,7 @@ from mbsd.dealing.deal import Deal
 from mbsd.dealing.manner import Kind, Manner, Voice
 from mbsd.dealing.pools import Here, Processes
 from mbsd.dealing.report import Report, encoded
+from tests.running.processes import until
 
 SAID: list[str] = []
 VOICE = Voice(SAID.append, SAID.append, RuntimeError, str, *["no worker"] * 9)
@@ -107,14 +107,6 @@ def test_processes_end_with_the_one_that_started_them_though_it_is_killed(tmp_pa
         until(lambda: not any(is_alive(worker) for worker in workers), 20.0)
     finally:
         starter.kill()
-
-
-def until(is_so: Callable[[], bool], seconds: float) -> None:
-    """Wait until something is so. Raises AssertionError after so many seconds."""
-    end = time.monotonic() + seconds
-    while not is_so():
-        assert time.monotonic() < end
-        time.sleep(0.1)
 
 
 def is_alive(process: int) -> bool:

@@ -1,1 +1,1 @@
-"""What a user's code depends on."""
+"""Dependencies of a user's code."""

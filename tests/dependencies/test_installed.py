@@ -1,4 +1,4 @@
-"""Which distribution brings a module."""
+"""Distributions by the modules that they bring."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from mbsd.dependencies import installed
 
 
 def test_modules_and_distributions_are_those_of_the_standard_library() -> None:
-    """Which asks the disk for every file of every package."""
+    """The standard library asks the disk for every file of every package; ours does not."""
     by_module = {
         top: {distribution.metadata["Name"] for distribution in them} for top, them in installed._by_module().items()
     }

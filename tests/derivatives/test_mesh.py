@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from mbsd.derivatives.free.linear_motion import NODES, PLACES, carried
+from mbsd.derivatives.free.linear_motion import NODES, PLACES, carried, own_rates
 from mbsd.derivatives.free.mesh import first_edges, longest_steps, looked_at, nodes_of, refined
 
 
@@ -63,6 +63,36 @@ def test_coupled_equations_are_those_of_an_integrator() -> None:
     known = truth.y.T.reshape(len(t), 6, 2)
     assert np.allclose(line.y[::NODES], known[::NODES], rtol=0.0, atol=1e-9 * np.abs(known).max())
     assert np.allclose(line.rates[0], rates(0.0, begun.ravel()).reshape(6, 2), rtol=1e-12, atol=1e-12)
+
+
+def test_coordinates_may_have_rates_of_their_own_and_more_of_them_than_velocities() -> None:
+    random = np.random.default_rng(5)
+    constant, turning_part = random.normal(0.0, 3.0, (2, 5, 5))  # n = 3 coordinates, k = 2 velocities
+    push, begun = random.normal(0.0, 1.0, (2, 5, 2))
+
+    def rates(t: float, y: np.ndarray) -> np.ndarray:
+        return ((constant + np.sin(3.0 * t) * turning_part) @ y.reshape(5, 2) + np.cos(t) * push).ravel()
+
+    edges = np.linspace(0.0, 1.0, 7)
+    t = np.append((edges[:-1, None] + np.diff(edges)[:, None] * PLACES[:NODES]).ravel(), 1.0)
+    matrix = constant + np.sin(3.0 * t)[:, None, None] * turning_part
+    right = np.cos(t)[:, None, None] * push
+    slight = np.full((5, 2), 1e-9)
+    line = carried(t, matrix[:, 3:], right[:, 3:], begun, slight, own_rates(matrix[:, :3], right[:, :3]))
+    truth = solve_ivp(rates, (0.0, 1.0), begun.ravel(), "DOP853", t, rtol=1e-13, atol=1e-13)
+    known = truth.y.T.reshape(len(t), 5, 2)
+    assert np.allclose(line.y[::NODES], known[::NODES], rtol=0.0, atol=1e-9 * np.abs(known).max())
+    assert np.allclose(line.rates[-1], rates(1.0, line.y[-1].ravel()).reshape(5, 2), rtol=1e-12, atol=1e-9)
+
+
+def test_rates_that_are_velocities_are_a_case_of_rates_of_their_own() -> None:
+    random = np.random.default_rng(7)
+    t = np.append((np.linspace(0.0, 1.0, 5)[:-1, None] + 0.25 * PLACES[:NODES]).ravel(), 1.0)
+    a, b = random.normal(0.0, 3.0, (len(t), 2, 4)), random.normal(0.0, 1.0, (len(t), 2, 3))
+    begun, slight = random.normal(0.0, 1.0, (4, 3)), np.full((4, 3), 1e-9)
+    same = np.broadcast_to(np.eye(4)[2:], (len(t), 2, 4))
+    own = carried(t, a, b, begun, slight, own_rates(same, np.zeros_like(b)))
+    assert np.allclose(own.y, carried(t, a, b, begun, slight).y, rtol=1e-10, atol=1e-12)
 
 
 def test_steps_are_longer_where_the_motion_is_smooth_wherever_outputs_are() -> None:

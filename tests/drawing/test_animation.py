@@ -222,7 +222,7 @@ def test_a_gif_plays_for_ever_at_real_time_with_the_same_bytes(tmp_path: Path) -
         ({"names": 1}, "names is 1; it must be True"),
     ],
 )
-def test_what_is_refused(asked: dict[str, object], words: str, tmp_path: Path) -> None:
+def test_invalid_animations_are_refused(asked: dict[str, object], words: str, tmp_path: Path) -> None:
     sol = four_bar().sweep(steps=8)
     arguments = {"path": tmp_path / "film.mp4"} | asked
     with pytest.raises(ModelError, match=re.escape(words)):

@@ -27,7 +27,7 @@ TEETH = 0.15
 
 
 def alike(a: np.ndarray, b: np.ndarray, closed: bool, slack: float) -> bool:
-    """Whether no corner of one polyline (k, 2) is farther than ``slack`` (m) from the other."""
+    """Return True if no corner of one polyline (k, 2) is farther than ``slack`` (m) from the other."""
     if not len(a) or not len(b):
         return len(a) == len(b)
     if a.shape == b.shape and float(np.abs(a - b).max()) <= slack:

@@ -33,19 +33,13 @@ from mbsd.testing import force_kinds, joint_kinds
 from mbsd.testing.forces import example as force_example
 from shared.stage.paths import ROOT
 from tests.kinematics.test_mobility import four_bar, parallelogram
-from tools.models import four_bars
+from tools.models import four_bars, linkages
 
 
 def slider_crank() -> Mechanism:
-    m = Mechanism("slider_crank")
-    crank, rod, slider = m.bar("crank", 0.05, 0.2), m.bar("rod", 0.15, 0.3), m.body("slider", 0.5)
-    m.revolute("O", m.ground.at(0, 0), crank.start)
-    m.revolute("A", crank.end, rod.start)
-    m.revolute("B", rod.end, slider.origin)
-    m.prismatic("guide", m.ground.at(0, 0), slider.origin)
-    m.drive_angle("motor", crank, constant_rate(10.0, math.radians(50)))
-    m.trace("P", rod.at(0.075, 0.02))
-    m.start_near(crank=50, rod=-15)
+    law = constant_rate(10.0, math.radians(50))
+    m = linkages.slider_crank(0.05, 0.15, 0.0, masses=(0.2, 0.3, 0.5), law=law, start=(50, -15))
+    m.trace("P", m.bodies["rod"].at(0.075, 0.02))
     return m
 
 
@@ -296,6 +290,6 @@ def test_the_diagrams_of_the_documents_are_those_of_their_code() -> None:
 
 
 def _marks(svg: str) -> list[str]:
-    """What a diagram says and how many shapes it has; places may differ in the last digit from machine to machine."""
+    """Return the texts of a diagram and its number of shapes; places may differ in the last digit."""
     elements = list(ET.fromstring(svg).iter())
     return sorted(e.text for e in elements if e.tag.endswith("text") and e.text) + [e.tag for e in elements]

@@ -33,7 +33,7 @@ def outlines(ax: Axes, number: int, order: float) -> list[np.ndarray]:
 
 
 def colours(ax: Axes) -> list[str]:
-    """Of the bodies, whose names are written in the model's order."""
+    """Return the colours of the bodies, whose names are written in the model's order."""
     from matplotlib.colors import to_hex
 
     shades = set(apart({f"{ink} {k}": ink for ink in INKS.values() for k in range(5)}).values())

@@ -62,7 +62,7 @@ def test_names_cannot_leave_the_script() -> None:
     ("arguments", "words"),
     [({"height": 10}, "give 120 or more"), ({"height": "x"}, "height"), ({"path": "/nowhere/x.html"}, "cannot write")],
 )
-def test_what_cannot_be_is_refused(sol: Solution, arguments: dict, words: str) -> None:
+def test_invalid_requests_are_refused(sol: Solution, arguments: dict, words: str) -> None:
     with pytest.raises(ModelError, match=words):
         sol.view(**arguments)
 

@@ -5,7 +5,8 @@
     m r'' = m g + J^T N,    I w' = I w x w + J^T N
 
 A corner of the body at s lies above the plane z = 0, where it may strike: Phi = (r + A(e) s)_z. Entries of a state:
-three idle ones, then the seven of q; of v the last one is idle.
+three idle ones, then the seven of q; of v the last one is idle. Functions of the user get places (m) of points of the
+body and their velocities (m/s).
 
 Source: Haug 1989, ch. 9 and 11.
 """
@@ -13,6 +14,7 @@ Source: Haug 1989, ch. 9 and 11.
 from __future__ import annotations
 
 import math
+from collections import namedtuple
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,11 +24,13 @@ from mbsd.compiling.jit import apart, inlined, internal
 from mbsd.dynamics.events.arrays import AFTER, PAUSES, Contacts
 from mbsd.dynamics.events.loop import JUMPED, run_events
 from mbsd.dynamics.events.packing import contacts_of
+from mbsd.dynamics.events.user_search import MOST_VALUES
+from mbsd.dynamics.events.users import Events, move_frames, read_frames
 from mbsd.dynamics.formulation import add_formulation
 from mbsd.dynamics.integrators.kind import Integrator
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.reference.arrays import scratch_for
-from mbsd.dynamics.state import TIME, Settings, output_for, start_state
+from mbsd.dynamics.state import TIME, Settings, State, output_for, start_state
 
 ENTRIES = 10
 NO_TIMES = np.zeros(0)
@@ -264,6 +268,62 @@ add_formulation(
 )
 
 
+SpatialEvents = namedtuple("SpatialEvents", Events._fields)
+"""Events of the user whose functions get points of the body."""
+
+
+@internal
+def _read_points(events, first, count, q, v):
+    """See events/users.py: places r + A s, then velocities r' + A (w x s)."""
+    inputs = events.inputs
+    for i in range(count):
+        s = events.arm[first + i]
+        a, b, c = v[6], v[7], v[8]
+        for axis in range(3):
+            inputs[3 * i + axis] = q[3 + axis] + _turned(q, s[0], s[1], s[2], axis)
+            inputs[3 * (count + i) + axis] = v[3 + axis] + _turned(
+                q, b * s[2] - c * s[1], c * s[0] - a * s[2], a * s[1] - b * s[0], axis
+            )
+
+
+@internal
+def _move_points(events, first, count, q, v):
+    """See events/users.py: points get velocities, and the body keeps its rotation."""
+    for i in range(count):
+        for axis in range(3):
+            v[3 + axis] += events.outputs[3 * i + axis] - events.inputs[3 * (count + i) + axis]
+
+
+read_frames.add(SpatialEvents, _read_points)
+move_frames.add(SpatialEvents, _move_points)
+
+
+def watched(point: np.ndarray, value: int, ends: bool = False, action: int = 0) -> Any:
+    """Return an event of the user with a point (3,) of the body; value and action: addresses of functions."""
+    looks = 16 + MOST_VALUES
+    return SpatialEvents(
+        table=np.array([[value, 0, 1, 0, int(ends), action, 0, 1]], np.int64),
+        number=np.zeros((1, 4)),
+        gone=np.full(1, np.inf),
+        release=np.zeros((0, 7), np.int64),
+        body=np.zeros(1, np.int64),
+        arm=np.array([point], float),
+        inputs=np.zeros(6),
+        outputs=np.zeros(3),
+        near=np.array([1e-11, -1e-11, 1e-11, -1e-11]),
+        away=1e-11 * np.resize([1.0, -1.0, -1.0], (4, ENTRIES)),
+        span=np.array([10.0]),
+        pose=np.zeros((2, ENTRIES)),
+        bend=np.zeros(ENTRIES),
+        parts=np.zeros(looks),
+        values=np.zeros(looks),
+        more=np.zeros((2, looks)),
+        there=np.zeros((2, looks)),
+        rough=np.zeros((2, looks), np.int64),
+        skipped=np.zeros(1, np.int64),
+    )
+
+
 class Flight:
     """A body of 2 kg in free flight above a plane, or striking it, by one of the solver's integrators."""
 
@@ -294,7 +354,7 @@ class Flight:
 
     def fly(self, q: np.ndarray, v: np.ndarray, times: np.ndarray, tolerance: float = 1e-11, step: float = 1e-3):
         """Return outputs without contact from q (7,) and v (6,) at the first of the times (T,) (s)."""
-        state = start_state(_entries(q, v), 1, float(times[0]))
+        state = start_state(entries(q, v), 1, float(times[0]))
         self.dyn.schur.rows[...] = -1
         out = output_for(times, ENTRIES, 1)
         status = self.method.advance(
@@ -303,11 +363,14 @@ class Flight:
         assert status == 0
         return out
 
+    def contacts(self, state: State) -> Contacts:
+        """Return the contact of the corner with the plane, and nothing else to meet."""
+        return contacts_of(self.ready, state, [], 0.2, self.method, log=True)
+
     def bounce(self, q: np.ndarray, v: np.ndarray, end: float) -> tuple[list[float], list[np.ndarray], np.ndarray]:
         """Return times (s) of impacts until ``end`` (s), states (2, 10) right after them, and at the end."""
-        state = start_state(_entries(q, v), 1, 0.0)
-        settings = self.settings(1e-11, 1e-3)
-        contacts: Contacts = contacts_of(self.ready, state, [], settings.longest, self.method)
+        state = start_state(entries(q, v), 1, 0.0)
+        settings, contacts = self.settings(1e-11, 1e-3), self.contacts(state)
         contacts.clock[PAUSES] = AFTER
         nowhere, times, states = output_for(NO_TIMES, ENTRIES, 1), [], []
         while True:
@@ -322,7 +385,7 @@ class Flight:
                 states.append(state.y.copy())
 
 
-def _entries(q: np.ndarray, v: np.ndarray) -> np.ndarray:
+def entries(q: np.ndarray, v: np.ndarray) -> np.ndarray:
     """(2, 10) of q (7,) and v (6,)."""
     y = np.zeros((2, ENTRIES))
     y[0, 3:], y[1, 3:9] = q, v

@@ -12,9 +12,9 @@ from scipy.linalg import block_diag
 from scipy.optimize import linprog
 
 from mbsd.compiling.jit import kernel
+from mbsd.dynamics.events.laws.complementarity import lowest_row, pivot_to_end
 from mbsd.dynamics.events.laws.division import divide, division_of
 from mbsd.dynamics.events.laws.least_part import FORCE, MOST_PUSH, OWN, PULLED, RAW, UNIT, least_part, together_of
-from mbsd.dynamics.events.pushes import lowest_row, pivot_to_end
 
 NEAR = 1e-8
 

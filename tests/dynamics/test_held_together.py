@@ -64,20 +64,17 @@ def assert_coulomb(sol: Solution) -> None:
             assert (np.abs(view.friction) <= joint.params["static_friction"] * view.normal + 1e-7 * largest).all()
 
 
+FEW_SEEDS = {five_bar_with_stops: 6, striker: 24, shaken_box: 16, level_chain: 8}
+
+
 @pytest.mark.parametrize(
-    ("machines", "count"), [(five_bar_with_stops, 6), (striker, 24), (shaken_box, 16), (level_chain, 8)]
+    ("machines", "seeds"),
+    [
+        *((machines, range(count)) for machines, count in FEW_SEEDS.items()),
+        *(pytest.param(machines, range(24, 84), marks=pytest.mark.slow) for machines in FEW_SEEDS),
+    ],
 )
-def test_random_machines_that_hold_each_other_go_on(machines: Machines, count: int) -> None:
-    check(machines, range(count))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("machines", [five_bar_with_stops, striker, shaken_box, level_chain])
-def test_many_random_machines_that_hold_each_other_go_on(machines: Machines) -> None:
-    check(machines, range(24, 84))
-
-
-def check(machines: Machines, seeds: range) -> None:
+def test_random_machines_that_hold_each_other_go_on(machines: Machines, seeds: range) -> None:
     for seed in seeds:
         m, _ = machines(Random(seed))
         sol = m.simulate(0.8, steps=STEPS, tolerance=1e-8)

@@ -14,10 +14,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from mbsd import Mechanism, ModelError, cycloidal, harmonic, polynomial
+from mbsd import Mechanism, ModelError, cycloidal
 from mbsd.base.warning import quiet
 from mbsd.measures import final, largest, samples
-from mbsd.numbers.names import number_named, with_values
 from tests.dynamics.many_models import STEPS, door, press
 from tools.hunt.free_case import nudged
 from tools.hunt.mixed_rows import beside_single_ones, mixed_rows
@@ -171,44 +170,6 @@ def test_a_mechanism_that_cannot_start_itself_serves_if_its_rows_can() -> None:
     )
     assert "do not close" in str(many.reason[0])
     assert many["x"][1] == barrier().simulate(0.2, steps=4).body("rocker").theta[-1]
-
-
-def test_two_numbers_of_one_law_change_together() -> None:
-    m = press()
-    numbers = [number_named(m, f"motor.{key}") for key in ("amplitude", "rate")]
-    assert with_values(m, numbers, [0.5, 8.0]).drivers["motor"].motion == harmonic(0.5, 8.0, 0.2)
-
-
-@pytest.mark.parametrize(
-    ("law", "vary", "at_once"),
-    [
-        (harmonic(0.5, 9.0, 0.1), {"amplitude": [0.5, 0.2, 0.7], "phase": [0.1, 0.0, 3.0]}, True),
-        (polynomial(0.1, 0.5), {"coefficients.1": [0.5, -0.2, 0.0]}, True),
-        (cycloidal(0.4, 0.2, 0.05), {"rise": [0.4, -0.3, 0.1]}, True),
-        (cycloidal(0.4, 0.2, 0.05), {"duration": [0.2, 0.1, 0.05]}, False),
-    ],
-)
-@pytest.mark.parametrize("formulation", ["auto", "reference"])
-def test_numbers_of_a_force_s_law_are_put_in_place_where_steps_end_as_before(
-    law: Any, vary: dict[str, list[float]], at_once: bool, formulation: str
-) -> None:
-    def pushed() -> Mechanism:
-        m = barrier()
-        m.torque("push", m.bodies["rocker"], law)
-        return m
-
-    measure = {"x": final("rocker.theta"), "f": final("D.fx")}
-    many = pushed().simulate_many(0.3, vary={"push": vary}, measure=measure, steps=STEPS, formulation=formulation)
-    assert many.alone == [None] * 3
-    assert ("prepared" in many.way) != at_once
-    for k in range(3):
-        m = pushed()
-        numbers = [number_named(m, f"push.{key}") for key in vary]
-        sol = with_values(m, numbers, [values[k] for values in vary.values()]).simulate(
-            0.3, steps=STEPS, formulation=formulation
-        )
-        assert many["x"][k] == sol.body("rocker").theta[-1]
-        np.testing.assert_allclose(many["f"][k], sol.joint("D").fx[-1], rtol=1e-12)
 
 
 def test_rows_do_not_depend_on_those_before_them() -> None:

@@ -45,17 +45,6 @@ MACHINES = {
 }
 
 
-@pytest.mark.parametrize("formulation", ["independent", "reference"])
-@pytest.mark.parametrize("name", MACHINES)
-def test_the_numbers_are_those_of_whole_simulations(name: str, formulation: str) -> None:
-    m, vary, measures = MACHINES[name]
-    whole = _many(m, vary, {**measures, **WHOLE}, formulation)
-    short = _many(m, vary, measures, formulation)
-    for column, values in short.columns.items():
-        np.testing.assert_array_equal(values, whole[column], err_msg=column)
-    assert np.isnan(short["never"]).any() if "never" in measures else short.good.all()
-
-
 LEVELS = st.floats(-0.5, 2.0).map(lambda level: round(level, 3))
 TIMES = st.lists(st.integers(0, STEPS).map(lambda k: DURATION * k / STEPS), min_size=1, max_size=3)
 

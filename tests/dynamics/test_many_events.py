@@ -10,38 +10,24 @@ import numba
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, ModelError, SimulationError, angle_reaches, distance_reaches, speed_reaches
+from mbsd import Mechanism, ModelError, SimulationError, angle_reaches, distance_reaches
 from mbsd.arrays.packing import pack
 from mbsd.base.errors import MechanismError
 from mbsd.dynamics.batch import worker
 from mbsd.dynamics.batch.single_run import Base, single_run
 from mbsd.dynamics.events import packing as made
 from mbsd.dynamics.simulate import request_for
-from mbsd.measures import final, first, largest, samples, smallest
+from mbsd.measures import final, first, largest, smallest
 from tests.dynamics.many_models import air
 from tools.models.guided import free_geneva, loose_gears
 from tools.models.releases import cranks, sling
 from tools.models.rough_contacts import ball as rough_ball
 from tools.models.rough_contacts import belt, rod
-from tools.models.sticking import (
-    bell,
-)
 from tools.models.stops import ball, barrier, bumpers
 from tools.models.user_events import halved, height, swing
 
 STEPS = 20
 EXACT = 2e-9
-
-
-def test_rows_that_end_early_are_looked_at_in_windows() -> None:
-    many = swing().simulate_many(
-        6.0, vary={"drive": {"torque": [1.2, 2.0, 2.8]}}, steps=300,
-        measure={"far": first("arm.theta", above=5.0), "slow": first("arm.theta", above=9.0), "t": samples("t", [0.1])},
-    )  # fmt: skip
-    assert many.alone == [None] * 3, many.way
-    assert np.isfinite(many["far"]).all()
-    assert np.isnan(many["slow"]).all()
-    assert np.array_equal(many["t"], np.full((3, 1), 0.1))
 
 
 def test_what_is_not_compiled_falls_back_and_is_named() -> None:
@@ -94,28 +80,6 @@ def test_markers_at_the_end_of_a_bar_move_with_it() -> None:
     assert min(event.time for event in m.simulate(1.5).events if event.name == "near") > 0.0
 
 
-@pytest.mark.parametrize("direction", [0, 1, -1])
-def test_a_turned_world_and_tight_tolerances_meet_them_too(direction: int) -> None:
-    def tilted(angle: float) -> Mechanism:
-        m = Mechanism("tilted", gravity=(9.81 * math.sin(angle), -9.81 * math.cos(angle)))
-        arm = m.bar("arm", 0.5, mass=0.3)
-        m.revolute("hinge", m.ground.at(0, 0), arm.start)
-        m.event("low", angle_reaches(arm, angle - math.pi / 2), direction=direction)
-        m.event("fast", speed_reaches(arm, 4.0), direction=direction, terminal=direction != 0)
-        m.start_near(arm=math.degrees(angle) - 10)
-        return m
-
-    ends = []
-    for angle in (0.0, 1.0):
-        many = tilted(angle).simulate_many(
-            2.0, start={"arm": np.degrees(angle) - np.array([10.0, 25.0])}, steps=5, tolerance=1e-12,
-            measure={"end": final("t"), "w": final("arm.omega")},
-        )  # fmt: skip
-        assert many.alone == [None, None], many.way
-        ends.append(np.concatenate([many["end"], many["w"]]))
-    np.testing.assert_allclose(ends[0], ends[1], atol=1e-9)
-
-
 def test_starts_vary_and_rows_end_early_by_the_steps_of_whole_ones() -> None:
     degrees = np.linspace(-170.0, 170.0, 12)
     m = free_geneva(5)
@@ -161,62 +125,12 @@ def test_room_is_looked_at_along_a_motion() -> None:
     assert worker.is_possible(packed, t[:1], y[:1])
 
 
-def test_bells_come_to_rest_from_any_angle_where_single_ones_do() -> None:
-    """Starts vary, rows end early, and the digits do not depend on the threads."""
-    angles, measure = [-20.0, -60.0], {"still": first("bar.omega", above=-1e-9, give="bar.theta")}
-    alone, together = (bell().simulate_many(4.0, start={"bar": angles}, measure=measure, threads=n) for n in (1, 2))
-    assert alone.alone == [None] * 2, alone.way
-    np.testing.assert_array_equal(alone["still"], together["still"])
-    end = bell().simulate_many(4.0, start={"bar": angles}, measure={"rest": final("bar.theta")})
-    for angle, rest in zip(angles, end["rest"], strict=True):
-        sol = bell(angle).simulate(4.0)
-        assert abs(sol.body("bar").omega[-1]) < 1e-12
-        assert rest == pytest.approx(sol.body("bar").theta[-1], abs=EXACT)
-        assert abs(rest + math.pi / 2) > 1e-3
-
-
-def test_a_turned_world_changes_nothing() -> None:
-    ends = []
-    for turned in (0.0, 2.0):
-        many = bell(-20.0, turned).simulate_many(4.0, vary={"bar": {"mass": [1.0]}}, measure={"a": final("bar.theta")})
-        assert many.alone == [None], many.way
-        ends.append(many["a"][0] - turned)
-    assert ends[0] == pytest.approx(ends[1], abs=1e-7)
-
-
-@pytest.mark.parametrize("method", ["rk4", "radau"])
-def test_other_methods_meet_joints_that_stick(method: str) -> None:
-    step = {"step": 1e-3} if method == "rk4" else {}
-    m = bell()
-    many = m.simulate_many(
-        0.5, vary={"bar": {"mass": [1.0]}}, measure={"a": final("bar.theta")}, steps=10, method=method, **step
-    )
-    assert many.way == "all of 1 in the compiled loop"
-    m.change("bar", mass=1.0)
-    assert many["a"][0] == pytest.approx(m.simulate(0.5, steps=10).body("bar").theta[-1], abs=1e-6)
-
-
 def test_a_row_begins_with_all_its_joints() -> None:
     many = sling().simulate_many(
         1.2, vary={"spring": {"torque": [4.0, 4.0, 0.0, 4.0]}}, measure={"y": final("arm.y")}, steps=STEPS, threads=1
     )
     assert many["y"][0] == many["y"][1] == many["y"][3]
     assert many["y"][2] == pytest.approx(1.0, abs=1e-12)
-
-
-def test_a_body_without_mass_that_is_let_go_goes_on_as_it_went() -> None:
-    m = Mechanism("light")
-    rod, bob = m.bar("rod", 0.5, mass=0.0), m.body("arm", mass=1.0, inertia=0.1)
-    m.revolute("A", m.ground.origin, rod.start)
-    m.weld("B", rod.end, bob.origin)
-    m.torque("drive", bob, 0.0)
-    m.event("low", angle_reaches(rod, -1.0), releases="B")
-    m.start_near(rod=0)
-    many = m.simulate_many(2.0, vary={"drive": {"torque": [0.0, 80.0]}}, measure={"t": final("rod.theta")}, steps=5)
-    assert many.alone == [None, None], many.way
-    sol = m.simulate(2.0, steps=5)
-    np.testing.assert_allclose(sol.body("rod").omega[-1], sol.body("rod").omega[-2], rtol=1e-9)
-    np.testing.assert_allclose(many["t"][0], sol.body("rod").theta[-1], atol=1e-9)
 
 
 def test_what_can_not_be_released_is_refused() -> None:

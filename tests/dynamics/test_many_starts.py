@@ -157,26 +157,6 @@ def test_starts_on_other_branches_and_reactions() -> None:
     assert many.way == "2 one by one (reactions where points are on curves that cross themselves)"
 
 
-def discs(count: int) -> Mechanism:
-    """Discs that fall side by side on a floor, each by its own rail."""
-    m = Mechanism("discs", gravity=(0, -9.81))
-    for k in range(count):
-        disc = m.body(f"d{k}", 1.0, inertia=0.01)
-        m.rigid_contact(f"floor{k}", m.ground.origin, disc.origin, radius=0.1, restitution=0.5)
-    m.start_near(**{f"d{k}": (0.3 * k, 0.2 + 0.01 * k, 0.0) for k in range(count)})
-    return m
-
-
-@pytest.mark.parametrize("method", ["rk4", "radau", "generalized_alpha", "scipy-dop853"])
-def test_every_integrator_meets_a_bounce(method: str) -> None:
-    m = discs(1)
-    options = {"step": 1e-4} if method in ("rk4", "generalized_alpha") else {}
-    sol, exact = (m.simulate(0.5, steps=5, **more) for more in ({"method": method, **options}, {"tolerance": 1e-11}))
-    assert [event.what for event in sol.events] == [event.what for event in exact.events]
-    np.testing.assert_allclose([event.time for event in sol.events], [event.time for event in exact.events], atol=1e-6)
-    np.testing.assert_allclose(sol.body("d0").y, exact.body("d0").y, atol=1e-6)
-
-
 def test_contacts_that_carry_in_turns_are_named() -> None:
     feet = [("left", "opens"), ("right", "closes"), ("left", "closes"), ("right", "opens")]
     changes = [Happening(0.5 + 1e-9 * k, *feet[k % 4]) for k in range(150)]

@@ -294,17 +294,6 @@ def test_a_speed_that_a_contact_takes_away_comes_to_zero_once_and_then(value, du
     assert times == [pytest.approx(LANDS, rel=1e-9)]
 
 
-def test_the_loop_over_many_meets_it_as_single_simulations_do() -> None:
-    m = thrown_box()
-    m.event("lies", leaving, frames=[m.bodies["box"].origin], terminal=True)
-    many = m.simulate_many(
-        1.0, vary={"box": {"mass": [1.0, 2.0, 3.0]}}, measure={"t": final("t"), "x": final("box.x")}, steps=20
-    )
-    assert many.alone == [None] * 3
-    np.testing.assert_allclose(many["t"], LANDS, rtol=1e-9)
-    np.testing.assert_allclose(many["x"], m.simulate(1.0, steps=20).body("box").x[-1], rtol=1e-9)
-
-
 def test_a_block_that_friction_stops_has_stopped() -> None:
     """Its speed comes to zero just when the contact begins to hold it."""
     m = Mechanism("block")

@@ -322,13 +322,3 @@ def test_what_cannot_be_is_refused() -> None:
         m.simulate(0.1, formulation="independent")
     with pytest.raises(ModelError, match=r"no friction of a joint 'rab', did you mean 'rub'"):
         m.simulate(0.1).friction("rab")
-
-
-@pytest.mark.parametrize("method", ["rk4", "radau", "generalized_alpha", "baumgarte", "scipy-dop853"])
-def test_other_methods_find_the_same_rest(method: str) -> None:
-    angle, mu, speed = 0.2, 0.3, 1.5
-    m = incline(angle, speed, coefficient=mu, sticks=True)
-    sol = m.simulate(0.5, steps=10, method=method, step=1e-3, tolerance=1e-9)
-    slowing = G * (math.sin(angle) + mu * math.cos(angle))
-    assert told(sol) == [("rub", "sticks")]
-    np.testing.assert_allclose(way(sol, angle)[-1], -(speed**2) / 2 / slowing, rtol=1e-6)

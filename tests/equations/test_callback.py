@@ -110,6 +110,6 @@ def test_a_function_that_numba_cannot_compile_is_told() -> None:
         Callback(numba.njit(lambda t, x: x.missing), (2,), 1, "swing")
 
 
-def test_what_is_no_function_is_refused() -> None:
+def test_objects_that_are_no_function_are_refused() -> None:
     with pytest.raises(ModelError, match="swing: 3 is no function"):
         Callback(3, (2,), 1, "swing")  # pyright: ignore[reportArgumentType]

@@ -107,17 +107,6 @@ def test_torque_by_a_law_of_time(law) -> None:
     np.testing.assert_allclose(sol.body("disc").omega, 3.0 * (1 - np.cos(2.0 * sol.t)), atol=1e-7)
 
 
-def test_kepler_orbit_returns_after_its_period() -> None:
-    m = Mechanism("orbit", gravity=None)
-    planet = m.body("planet", 1.0, inertia=1.0)
-    m.gravitation("pull", m.ground.at(0, 0), planet.origin, -4.0 * math.pi**2)
-    m.start_near(planet=(0.5, 0.0, 0.0))
-    m.start_moving(planet=(0.0, 2 * math.pi * math.sqrt(3.0), 0.0))
-    view = m.simulate(1.0, steps=10, tolerance=1e-11).body("planet")
-    np.testing.assert_allclose([view.x[5], view.y[5]], [-1.5, 0.0], atol=1e-7)
-    np.testing.assert_allclose([view.x[-1], view.y[-1]], [0.5, 0.0], atol=1e-7)
-
-
 def test_gas_does_the_work_of_its_polytrope() -> None:
     m = Mechanism("gas", gravity=None)
     piston = m.body("piston", 0.5, inertia=1.0)

@@ -101,7 +101,7 @@ def test_in_a_driven_turn_the_damping_takes_what_the_driver_gives() -> None:
         ({"exponent": 0.9}, "exponent is 0.9; it must be 1 or more"),
     ],
 )
-def test_what_cannot_be_is_refused(more: dict, words: str) -> None:
+def test_invalid_requests_are_refused(more: dict, words: str) -> None:
     m = Mechanism("strut")
     body = m.body("body", 1.0, inertia=1.0)
     numbers = {"force": F1, "ratio": RATIO, "length": LENGTH, "stroke": STROKE} | more

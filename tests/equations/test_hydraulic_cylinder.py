@@ -230,7 +230,7 @@ def test_the_pressure_drop_of_a_flow_gives_this_flow(root: float, transition: fl
         ({"stroke": 0.0}, "stroke is 0"),
         ({"stroke": 0.3}, r"1 m apart at the start; with a stroke of 0.3 m they are 0.6 .. 0.9 m apart"),
         ({"valve": 1.4}, r"valve is 1.4; its opening is -1 .. 1"),
-        ({"supply": 200.0}, r"in pascals \(200 bar are 2e7\), and the supply's is the higher one"),
+        ({"supply": 200.0}, r"in pascals \(200 bar are 2e7\); make the supply's the higher one"),
         ({"orifice": 1e-4}, "a rated_flow and an orifice"),
         ({"rated_flow": None}, "neither rated_flow nor orifice"),
         ({"air": 1.0}, "air is 1; it is a part of the volume"),
@@ -239,7 +239,7 @@ def test_the_pressure_drop_of_a_flow_gives_this_flow(root: float, transition: fl
         ({"bulk_modulus": math.inf}, "bulk_modulus is inf"),
     ],
 )
-def test_what_no_cylinder_is_is_refused(more: dict[str, Any], said: str) -> None:
+def test_invalid_cylinders_are_refused(more: dict[str, Any], said: str) -> None:
     m = Mechanism("press", gravity=None)
     carriage = m.body("carriage", 10.0, inertia=1.0)
     m.prismatic("rail", m.ground.origin, carriage.origin)
@@ -269,6 +269,6 @@ def test_millimetres_and_litres_a_minute_are_told() -> None:
     assert not m.check()
 
 
-def test_what_looks_at_poses_alone_refuses_pressures() -> None:
+def test_analyses_of_poses_alone_refuse_pressures() -> None:
     with pytest.raises(ModelError, match=r"force 'ram' .* carries pressure_a and pressure_b"):
         press().equilibrium()

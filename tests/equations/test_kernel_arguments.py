@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[2]
 
 @apart
 def _weighed(x):
-    """What follows from the numbers, the shape, the strides and the sizes of an array (a, b)."""
+    """Return a sum of the numbers, the shape, the strides and the sizes of an array (a, b)."""
     total = 0.0
     for i in range(x.shape[0]):
         for j in range(x.shape[1]):

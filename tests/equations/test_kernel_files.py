@@ -115,7 +115,7 @@ print(kernels.value(1.0), sum(kernels.value.stats.cache_hits.values()))
 """
 
 
-def _asked(folder: Path, kept: Path, before: str = "") -> str:
+def _answer(folder: Path, kept: Path, before: str = "") -> str:
     code = ASKED.format(folder=str(folder), before=before)
     return _run(code, folder, NUMBA_CACHE_DIR=str(kept), PYTHONDONTWRITEBYTECODE="1").strip()
 
@@ -124,28 +124,28 @@ def test_runs_go_on_after_all_files_were_cut_short(tmp_path: Path) -> None:
     """Each of them ended in an EOFError, and so did every later run."""
     (tmp_path / "kernels.py").write_text(KERNEL)
     kept = tmp_path / "kept"
-    assert [_asked(tmp_path, kept) for _ in range(2)] == ["2.0 0", "2.0 1"]
+    assert [_answer(tmp_path, kept) for _ in range(2)] == ["2.0 0", "2.0 1"]
     for path in kept.rglob("*.nb*"):
         os.truncate(path, path.stat().st_size // 2)
-    assert [_asked(tmp_path, kept) for _ in range(2)] == ["2.0 0", "2.0 1"]
+    assert [_answer(tmp_path, kept) for _ in range(2)] == ["2.0 0", "2.0 1"]
 
 
 def test_damaged_kernels_of_a_wheel_are_passed_over(tmp_path: Path) -> None:
     (tmp_path / "kernels.py").write_text(KERNEL)
-    _asked(tmp_path, tmp_path / "first")
+    _answer(tmp_path, tmp_path / "first")
     shutil.copytree(tmp_path / "first" / "kernels", tmp_path / "shipped")
     before = f"kernel_cache.SHIPPED = Path({str(tmp_path / 'shipped')!r})"
     kept = tmp_path / "kept"
-    assert _asked(tmp_path, kept, before) == "2.0 1", "the wheel's"
+    assert _answer(tmp_path, kept, before) == "2.0 1", "the wheel's"
     for path in (tmp_path / "shipped").rglob("*.nbc"):
         _flipped(path)
-    assert [_asked(tmp_path, kept, before) for _ in range(2)] == ["2.0 0", "2.0 1"]
+    assert [_answer(tmp_path, kept, before) for _ in range(2)] == ["2.0 0", "2.0 1"]
     assert list(kept.rglob("*.nbc"))
 
 
 def test_who_cannot_write_to_the_clone_takes_its_kernels_and_adds_to_his_own(tmp_path: Path) -> None:
     (tmp_path / "kernels.py").write_text(KERNEL)
-    _asked(tmp_path, tmp_path / "clone")
+    _answer(tmp_path, tmp_path / "clone")
     before = (
         f"import os; os.environ.pop('NUMBA_CACHE_DIR'); os.environ['XDG_CACHE_HOME'] = {str(tmp_path / 'own')!r}\n"
         f"kernel_cache._beside_package = lambda: Path({str(tmp_path / 'clone')!r})\n"
@@ -155,9 +155,9 @@ def test_who_cannot_write_to_the_clone_takes_its_kernels_and_adds_to_his_own(tmp
         "    return make(dir=dir, **more)\n"
         "tempfile.TemporaryFile = refused"
     )
-    assert _asked(tmp_path, tmp_path / "unused", before) == "2.0 1"
+    assert _answer(tmp_path, tmp_path / "unused", before) == "2.0 1"
     (tmp_path / "kernels.py").write_text(KERNEL.replace("2.0", "3.0"))
-    assert [_asked(tmp_path, tmp_path / "unused", before) for _ in range(2)] == ["3.0 0", "3.0 1"]
+    assert [_answer(tmp_path, tmp_path / "unused", before) for _ in range(2)] == ["3.0 0", "3.0 1"]
     assert list((tmp_path / "own").rglob("*.nbc"))
     assert len(list((tmp_path / "clone").rglob("*.nbc"))) == 1
 
@@ -167,5 +167,5 @@ def test_a_disk_that_is_full_keeps_nothing_and_ends_no_run(tmp_path: Path) -> No
     (tmp_path / "kernels.py").write_text(KERNEL)
     before = "import os\ndef full(handle): raise OSError(28, 'No space left on device')\nos.fsync = full"
     kept = tmp_path / "kept"
-    assert _asked(tmp_path, kept, before) == "2.0 0"
+    assert _answer(tmp_path, kept, before) == "2.0 0"
     assert not [path for path in kept.rglob("*") if ".nb" in path.name]

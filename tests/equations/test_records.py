@@ -79,7 +79,7 @@ def add(outer, pair):
 
 
 @kernel
-def through(outer, pair):
+def add_swapped(outer, pair):
     """``add`` as kernels call it, with a named tuple that was made here."""
     return add(outer, Pair(pair.second, pair.first))
 
@@ -90,24 +90,24 @@ def outside(outer, pair):
     return add(outer, Pair(pair.second, pair.first))
 
 
-def made() -> tuple[Outer, Pair]:
+def example() -> tuple[Outer, Pair]:
     rows = np.arange(6.0).reshape(2, 3)
     inner = Inner(rows, np.arange(12.0).reshape(2, 6)[:, ::2], np.array([2, 3]))
     return Outer(inner, 0.5, 7, False), Pair(np.array([3.0]), np.array([4.0]))
 
 
 def expected(first: float, second: float) -> float:
-    inner = made()[0].inner
+    inner = example()[0].inner
     whole = float((inner.rows + 10.0 * inner.columns * inner.places[:, None]).sum()) + 1e3 * inner.columns.strides[0]
     return (0.5 * whole + 7) - 2 * (whole + 7) + 3 * (first + 2.0 * second)
 
 
 def test_fields_come_as_they_are_from_python_from_kernels_and_from_numba() -> None:
     """Numbers are exact: all of them are whole or halves."""
-    outer, pair = made()
+    outer, pair = example()
     assert add(outer, pair) == expected(3.0, 4.0)
     assert pair.first[0] == 4.0
-    assert through(outer, pair) == expected(4.0, 4.0)
+    assert add_swapped(outer, pair) == expected(4.0, 4.0)
     assert pair.second[0] == 5.0
     assert outside(outer, pair) == expected(5.0, 4.0)
 
@@ -120,10 +120,10 @@ def test_a_kernel_that_returns_one_is_refused() -> None:
         return Pair(pair.second, pair.first)
 
     with pytest.raises(Exception, match="a kernel returns a Pair"):
-        returned(made()[1])
+        returned(example()[1])
 
 
-def test_what_python_calls_of_a_shared_kernel_is_compiled_when_python_calls_it() -> None:
+def test_the_python_face_of_a_shared_kernel_compiles_at_its_first_call() -> None:
     """Kernels call what has no wrapper for Python; the second call finds the first one's code."""
 
     @shared

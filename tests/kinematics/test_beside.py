@@ -50,7 +50,7 @@ def test_motion_and_reactions_are_those_of_one_made_ready_by_itself(length: floa
     np.testing.assert_array_equal(m.sweep(times=GRID).q, sweep(m, None, 1, GRID).q)  # the first is left as it was
 
 
-def test_what_does_not_close_is_refused_as_by_itself() -> None:
+def test_open_loops_are_refused_as_by_single_solutions() -> None:
     m = planetary()
     ready, other = prepare(m, 0.0, 1.0), copy.deepcopy(m)
     other.change("arm", length=0.07)

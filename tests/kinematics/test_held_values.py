@@ -1,4 +1,4 @@
-"""What is held of a start does not depend on the axes of the world."""
+"""Values held at a start do not depend on the axes of the world."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from mbsd.measures import final
 def railed(turn: float, place: complex = 0.3 + 0.1j, velocity: complex = 0.5 + 0.2j, slope: float = 0.7) -> Mechanism:
     """A block on a rail that rises by ``slope`` (rad), put and pushed beside it, with a rod; the world turned (rad)."""
 
-    def at(z: complex) -> tuple[float, float]:
+    def turned(z: complex) -> tuple[float, float]:
         z *= complex(math.cos(turn), math.sin(turn))
         return z.real, z.imag
 
-    gravity = at(-9.81j)
+    gravity = turned(-9.81j)
     m = Mechanism("railed", gravity=gravity)
     block, rod = m.body("block", 1.0, inertia=0.01), m.bar("rod", 0.2, mass=0.5)
-    m.prismatic("rail", m.ground.at(*at(0.05 + 0.02j), turn + slope), block.origin)
+    m.prismatic("rail", m.ground.at(*turned(0.05 + 0.02j), turn + slope), block.origin)
     m.revolute("pin", block.at(0.01, 0.02), rod.start)
-    m.start_near(block=(*at(place), math.degrees(turn + slope)), rod=math.degrees(turn) - 60.0)
-    m.start_moving(block=(*at(velocity), 0.0), rod=1.0)
+    m.start_near(block=(*turned(place), math.degrees(turn + slope)), rod=math.degrees(turn) - 60.0)
+    m.start_moving(block=(*turned(velocity), 0.0), rod=1.0)
     return m
 
 

@@ -9,24 +9,15 @@ import pytest
 
 from mbsd import AssemblyError, Mechanism, MobilityError, ModelError, SingularPoseError, constant_rate
 from tests.dynamics.test_simulate import n_four_bar
+from tools.models import linkages
 
 
 def four_bar(
     ground: float = 0.12, crank: float = 0.04, coupler: float = 0.12, rocker: float = 0.09, drive: bool = True
 ) -> Mechanism:
     """The plain four-bar A-B-C-D with uniform rods of 1 kg/m."""
-    m = Mechanism("four_bar")
-    bars = [
-        m.bar(name, length, length) for name, length in (("crank", crank), ("coupler", coupler), ("rocker", rocker))
-    ]
-    m.revolute("A", m.ground.at(0, 0), bars[0].start)
-    m.revolute("B", bars[0].end, bars[1].start)
-    m.revolute("C", bars[1].end, bars[2].end)
-    m.revolute("D", m.ground.at(ground, 0), bars[2].start)
-    if drive:
-        m.drive_angle("motor", bars[0], constant_rate(2 * math.pi))
-    m.start_near(crank=0, coupler=45, rocker=100)
-    return m
+    lengths = crank, coupler, rocker
+    return linkages.four_bar(ground, *lengths, masses=lengths, law=linkages.TURN if drive else None)
 
 
 def parallelogram(extra: bool = True) -> Mechanism:

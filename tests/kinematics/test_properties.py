@@ -1,4 +1,4 @@
-"""What holds for any closed linkage: energy, constraints, balance on every body, objectivity, inverse dynamics."""
+"""Properties of any closed linkage: energy, constraints, balance, objectivity, inverse dynamics."""
 
 from __future__ import annotations
 

@@ -190,7 +190,7 @@ def test_an_arm_that_cannot_follow_ends_as_before() -> None:
     assert errors[0] == errors[1]
 
 
-def test_what_a_users_relation_raises_comes_out() -> None:
+def test_exceptions_of_a_users_relation_come_out() -> None:
     """A function that fails in the middle of a sweep stops it with its own words."""
 
     def half(x: float, y: float, a: float) -> float:

@@ -58,7 +58,7 @@ def test_one_of_several_dyads_is_named() -> None:
     assert [finding.name for finding in m.check()] == ["other"]
 
 
-def test_what_hangs_freely_or_is_near_is_not_told() -> None:
+def test_free_and_near_bodies_are_not_reported() -> None:
     m = Mechanism("pendulums")
     first, second = m.bar("first", 0.5, 1.0), m.bar("second", 0.5, 1.0)
     m.revolute("A", m.ground.origin, first.start)

@@ -61,7 +61,7 @@ REFUSED: list[tuple[Callable[[], Mechanism], str]] = [
 
 
 @pytest.mark.parametrize(("make", "says"), REFUSED)
-def test_what_cannot_mesh_is_refused_by_every_analysis(make: Callable[[], Mechanism], says: str) -> None:
+def test_wheels_that_cannot_mesh_are_refused_by_every_analysis(make: Callable[[], Mechanism], says: str) -> None:
     m = make()
     for solve in (m.sweep, lambda: m.simulate(0.1, steps=2), m.equilibrium, m.mobility):
         with pytest.raises(AssemblyError, match=says):
@@ -83,7 +83,7 @@ def test_what_cannot_mesh_is_refused_by_every_analysis(make: Callable[[], Mechan
         lambda: planetary(0.05),
     ],
 )
-def test_what_meshes_is_solved(make: Callable[[], Mechanism]) -> None:
+def test_meshing_wheels_are_solved(make: Callable[[], Mechanism]) -> None:
     make().sweep(0.1, steps=2)
 
 

@@ -15,7 +15,7 @@ from mbsd.model.body import Body
 from tools.models import four_bars
 
 A, B, C, D = (0.0, 0.0), (0.03, 0.04), (0.15, 0.10), (0.12, 0.0)
-"""Of a four-bar as drawn (m)."""
+"""Pins of a four-bar as drawn (m)."""
 
 
 def drawn(frames: dict[str, tuple[float, float, float]]) -> Mechanism:
@@ -132,14 +132,16 @@ def test_gears_and_closed_loops_stay_meshed() -> None:
 def test_a_pose_that_is_not_known_is_refused() -> None:
     m = Mechanism("loose")
     rod, slide, load = m.bar("rod", 1.0), m.body("slide"), m.body("load")
-    with pytest.raises(ModelError, match=r"loose: rod\.at_world: .*its place and angle are free; .*=\(x, y, degrees\)"):
+    with pytest.raises(
+        ModelError, match=r"loose: rod\.at_world: .*its place and angle are free\. .*=\(x, y, degrees\)"
+    ):
         rod.at_world(0, 0)
     m.revolute("A", m.ground.origin, rod.start)
     m.prismatic("rail", m.ground.origin, slide.origin)
     m.revolute("B", rod.end, load.origin)
-    with pytest.raises(ModelError, match=r"'rod' is at the start is not known yet, its angle is free; .*rod=degrees\)"):
+    with pytest.raises(ModelError, match=r"start of 'rod' is not known yet: its angle is free\. .*rod=degrees\)"):
         rod.at_world(0, 0)
-    with pytest.raises(ModelError, match=r"'slide' .*its place is free; .* start_near\(slide=\(x, y, degrees\)\)"):
+    with pytest.raises(ModelError, match=r"'slide' .*its place is free\. .* start_near\(slide=\(x, y, degrees\)\)"):
         slide.at_world(0, 0)
     m.start_near(rod=90, load=0)
     assert (rod.at_world(0.3, 1.0).x, rod.at_world(0.3, 1.0).y) == pytest.approx((1.0, -0.3))

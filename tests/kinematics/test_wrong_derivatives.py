@@ -12,6 +12,7 @@ import pytest
 
 from mbsd import Mechanism, ModelError, Motion, constant_rate, function
 from mbsd.kinematics import steps
+from tools.models import linkages
 
 WRONG = {
     "sign of f''": function(math.sin, math.cos, math.sin),
@@ -38,27 +39,20 @@ ANALYSES = {
     "simulate": lambda m: m.simulate(2.0, 10),
     "batch": lambda m: m.batch(lengths={"coupler": [3.0, 3.1]}, duration=2.0, steps=20),
     "equilibrium": lambda m: m.equilibrium(),
-    "efforts": lambda m: m.inverse_dynamics(m.sweep(2.0, 20), ["drive"]),
+    "efforts": lambda m: m.inverse_dynamics(m.sweep(2.0, 20), ["motor"]),
 }
 
 
 def four_bar(law: Motion) -> Mechanism:
-    m = Mechanism("four-bar", gravity=(0.0, -9.81))
-    crank, coupler, rocker = m.bar("crank", 1.0, mass=1.0), m.bar("coupler", 3.0, mass=1.0), m.bar("rocker", 2.5)
+    m = linkages.four_bar(3.0, 1.0, 3.0, 2.5, (60, 90), masses=(1.0, 1.0, None), law=law, gravity=(0.0, -9.81))
     m.set_mass("rocker", 1.0, (1.25, 0.0), 0.1)
-    m.revolute("A", m.ground.at(0, 0), crank.start)
-    m.revolute("B", crank.end, coupler.start)
-    m.revolute("C", coupler.end, rocker.end)
-    m.revolute("D", m.ground.at(3, 0), rocker.start)
-    m.drive_angle("drive", crank, law)
-    m.start_near(crank=0.0, coupler=60.0, rocker=90.0)
     return m
 
 
 @pytest.mark.parametrize("analysis", ANALYSES.values(), ids=ANALYSES)
 @pytest.mark.parametrize("law", WRONG.values(), ids=WRONG)
 def test_every_analysis_refuses_it(law: Motion, analysis) -> None:
-    with pytest.raises(ModelError, match=r"four-bar: driver 'drive': function: d?df is not the derivative of d?f"):
+    with pytest.raises(ModelError, match=r"four_bar: driver 'motor': function: d?df is not the derivative of d?f"):
         analysis(four_bar(law))
 
 
@@ -88,7 +82,7 @@ def test_a_function_that_has_changed_is_compared_again() -> None:
 def test_a_changed_law_is_compared_again() -> None:
     m = four_bar(function(math.sin, math.cos, lambda t: -math.sin(t)))
     m.sweep(2.0, 20)
-    m.change("drive", law=WRONG["sign of f''"])
+    m.change("motor", law=WRONG["sign of f''"])
     with pytest.raises(ModelError, match="ddf is not the derivative of df"):
         m.sweep(2.0, 20)
 

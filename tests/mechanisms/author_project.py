@@ -65,7 +65,7 @@ class Project:
                 del sys.modules[name]
 
 
-def put(path: str, text: str) -> Callable[[Project], None]:
+def write_file(path: str, text: str) -> Callable[[Project], None]:
     """Writes a file of the project."""
 
     def step(project: Project) -> None:

@@ -1,4 +1,4 @@
-"""What the registry tests of mechanisms/ run over."""
+"""Mechanisms over which the registry tests of mechanisms/ run."""
 
 from __future__ import annotations
 

@@ -67,7 +67,7 @@ stage.run("four_bar", "skeleton")
 """
 
 
-def test_what_a_kill_leaves_is_removed_by_the_next_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_rest_of_a_killed_run_is_removed_by_the_next(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Half a film stayed under a hidden name for ever, a new one after each kill."""
     monkeypatch.setenv("MBSD_OUT", str(tmp_path))
     done = subprocess.run([sys.executable, "-c", KILLED], cwd=ROOT, capture_output=True, check=False)

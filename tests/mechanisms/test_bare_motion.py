@@ -16,7 +16,7 @@ from mechanisms.stages.solve.masses import HALF_WIDTH, THICKNESS, bare_solution,
 from shared.contract import read_motion
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
-from tests.mechanisms.author_project import Project, put
+from tests.mechanisms.author_project import Project, write_file
 
 PENDULUM = """
 from mbsd import Mechanism
@@ -88,7 +88,7 @@ def test_a_stated_duration_and_number_of_steps_count(monkeypatch: pytest.MonkeyP
     assert len(solution.t) == 11
 
 
-def test_what_is_not_driven_is_simulated(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_mechanisms_without_drivers_are_simulated(monkeypatch: pytest.MonkeyPatch) -> None:
     _Author(monkeypatch, _pendulum, DURATION=0.5)
     solution = bare_solution("arm")
     assert solution.t[-1] == 0.5
@@ -102,14 +102,14 @@ def test_what_is_not_driven_is_simulated(monkeypatch: pytest.MonkeyPatch) -> Non
 @pytest.mark.parametrize(
     ("constants", "words"),
     [
-        ({}, r"arm: 1 degree of freedom is not driven.*write DURATION = 2\.0 .*mechanism\.py, or add a driver"),
+        ({}, r"arm: 1 degree of freedom is not driven.*Write DURATION = 2\.0 .*mechanism\.py, or add a driver"),
         ({"DURATION": -1.0}, r"mechanism\.py: DURATION is -1\.0; it must be a number of seconds"),
         ({"DURATION": "2 s"}, r"DURATION is '2 s'"),
         ({"DURATION": 1.0, "STEPS": 1.5}, r"STEPS is 1\.5; it must be a whole number"),
         ({"DURATION": 1.0, "STEPS": True}, r"STEPS is True"),
     ],
 )
-def test_what_is_missing_or_no_number_is_told(
+def test_missing_and_invalid_constants_are_reported(
     monkeypatch: pytest.MonkeyPatch, constants: dict[str, Any], words: str
 ) -> None:
     _Author(monkeypatch, _pendulum, **constants)
@@ -150,7 +150,7 @@ def test_a_folder_without_parts_is_solved_and_says_how_heavy_it_took_its_bodies(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, out_root: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     project = Project(tmp_path / "project", monkeypatch, solve_stage)
-    put("mechanisms/arm/mechanism.py", PENDULUM.format(mass="") + "\nDURATION = 0.2\n")(project)
+    write_file("mechanisms/arm/mechanism.py", PENDULUM.format(mass="") + "\nDURATION = 0.2\n")(project)
     assert project.run()
     said = capsys.readouterr().out
     assert "solve: arm: no parts yet, so masses are estimated" in said
@@ -160,7 +160,7 @@ def test_a_folder_without_parts_is_solved_and_says_how_heavy_it_took_its_bodies(
     assert motion.bodies["arm"].mass > 0.1
     assert motion.period is None
     assert not project.run()
-    put("mechanisms/arm/mechanism.py", PENDULUM.format(mass=", mass=2.5") + "\nDURATION = 0.2\n")(project)
+    write_file("mechanisms/arm/mechanism.py", PENDULUM.format(mass=", mass=2.5") + "\nDURATION = 0.2\n")(project)
     assert project.run()
     assert "estimated" not in capsys.readouterr().out
     assert read_motion(Out("arm").motion).bodies["arm"].mass == 2.5
@@ -192,7 +192,7 @@ def test_rows_lie_so_close_that_the_film_shows_the_motion_itself(monkeypatch: py
     assert 361 < len(solution.t) < 1000
 
 
-def test_what_is_smooth_gets_no_more_rows(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_smooth_motions_get_no_more_rows(monkeypatch: pytest.MonkeyPatch) -> None:
     _Author(monkeypatch, _pendulum, DURATION=1.0)
     assert len(bare_solution("arm").t) == 361
 
@@ -227,7 +227,7 @@ def test_a_mass_of_zero_is_massless_on_purpose() -> None:
     assert "rod" not in sentences[0]
 
 
-def test_of_many_masses_the_first_are_told() -> None:
+def test_the_first_of_many_masses_are_reported() -> None:
     m = Mechanism("many")
     for k in range(20):
         m.bar(f"bar{k}", 0.1)

@@ -1,4 +1,4 @@
-"""What an author's file is made of and reads: each decides whether its stage runs again, and nothing else does.
+"""Inputs of an author's file: each decides whether its stage runs again, and nothing else does.
 
 The stage of shot.py stands for all three: they record alike, and it takes milliseconds.
 """
@@ -20,7 +20,7 @@ from shared.contract.shot import read_shot
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
 from shared.stage.stages import Stage
-from tests.mechanisms.author_project import Project, put
+from tests.mechanisms.author_project import Project, write_file
 
 
 @pytest.fixture
@@ -51,104 +51,104 @@ CASES: dict[str, tuple[str, Callable[[Project], None], Callable[[Project], None]
     # what shot.py says; what makes it 2 turns, and what makes it 3
     "a module beside it": (
         "from mechanisms.arm.helper import TURNS\nshot = Shot(turns=TURNS)\n",
-        put("mechanisms/arm/helper.py", IMPORTED[0]),
-        put("mechanisms/arm/helper.py", IMPORTED[1]),
+        write_file("mechanisms/arm/helper.py", IMPORTED[0]),
+        write_file("mechanisms/arm/helper.py", IMPORTED[1]),
     ),
     "a relative import": (
         "from . import helper\nshot = Shot(turns=helper.TURNS)\n",
-        put("mechanisms/arm/helper.py", IMPORTED[0]),
-        put("mechanisms/arm/helper.py", IMPORTED[1]),
+        write_file("mechanisms/arm/helper.py", IMPORTED[0]),
+        write_file("mechanisms/arm/helper.py", IMPORTED[1]),
     ),
     "a package below it": (
         "from mechanisms.arm.laws.film import TURNS\nshot = Shot(turns=TURNS)\n",
-        put("mechanisms/arm/laws/film.py", IMPORTED[0]),
-        put("mechanisms/arm/laws/film.py", IMPORTED[1]),
+        write_file("mechanisms/arm/laws/film.py", IMPORTED[0]),
+        write_file("mechanisms/arm/laws/film.py", IMPORTED[1]),
     ),
     "the module's own module": (
         "from mechanisms.other.helper import TURNS\nshot = Shot(turns=TURNS)\n",
         both(
-            put("mechanisms/other/helper.py", "from mechanisms.other.deep import TURNS\n"),
-            put("mechanisms/other/deep.py", IMPORTED[0]),
+            write_file("mechanisms/other/helper.py", "from mechanisms.other.deep import TURNS\n"),
+            write_file("mechanisms/other/deep.py", IMPORTED[0]),
         ),
-        put("mechanisms/other/deep.py", IMPORTED[1]),
+        write_file("mechanisms/other/deep.py", IMPORTED[1]),
     ),
     "another mechanism": (
         "from mechanisms.other.mechanism import TURNS\nshot = Shot(turns=TURNS)\n",
-        put("mechanisms/other/mechanism.py", IMPORTED[0]),
-        put("mechanisms/other/mechanism.py", IMPORTED[1]),
+        write_file("mechanisms/other/mechanism.py", IMPORTED[0]),
+        write_file("mechanisms/other/mechanism.py", IMPORTED[1]),
     ),
     "sys.path": (
         "import sys\nsys.path.insert(0, str(HERE / 'lib'))\nimport film_turns\nshot = Shot(turns=film_turns.TURNS)\n",
-        put("mechanisms/arm/lib/film_turns.py", IMPORTED[0]),
-        put("mechanisms/arm/lib/film_turns.py", IMPORTED[1]),
+        write_file("mechanisms/arm/lib/film_turns.py", IMPORTED[0]),
+        write_file("mechanisms/arm/lib/film_turns.py", IMPORTED[1]),
     ),
     "import_module": (
         "import importlib\nshot = Shot(turns=importlib.import_module('mechanisms.arm.helper').TURNS)\n",
-        put("mechanisms/arm/helper.py", IMPORTED[0]),
-        put("mechanisms/arm/helper.py", IMPORTED[1]),
+        write_file("mechanisms/arm/helper.py", IMPORTED[0]),
+        write_file("mechanisms/arm/helper.py", IMPORTED[1]),
     ),
     "exec": (
         "exec((HERE / 'helper.py').read_text())\nshot = Shot(turns=TURNS)\n",
-        put("mechanisms/arm/helper.py", IMPORTED[0]),
-        put("mechanisms/arm/helper.py", IMPORTED[1]),
+        write_file("mechanisms/arm/helper.py", IMPORTED[0]),
+        write_file("mechanisms/arm/helper.py", IMPORTED[1]),
     ),
     "a module that was not there": (
         "try:\n    from mechanisms.arm.local import TURNS\n"
         "except ImportError:\n    TURNS = 2\nshot = Shot(turns=TURNS)\n",
         lambda project: None,
-        put("mechanisms/arm/local.py", IMPORTED[1]),
+        write_file("mechanisms/arm/local.py", IMPORTED[1]),
     ),
     "open": (
         "with open(HERE / 'turns.csv') as file:\n    shot = Shot(turns=int(file.read()))\n",
-        put(CSV, "2"),
-        put(CSV, "3"),
+        write_file(CSV, "2"),
+        write_file(CSV, "3"),
     ),
     "numpy": (
         "import numpy as np\nshot = Shot(turns=int(np.loadtxt(HERE / 'turns.csv')))\n",
-        put(CSV, "2"),
-        put(CSV, "3"),
+        write_file(CSV, "2"),
+        write_file(CSV, "3"),
     ),
     "json": (
         "import json\nshot = Shot(turns=json.loads((HERE / 'a.json').read_bytes())['turns'])\n",
-        put("mechanisms/arm/a.json", '{"turns": 2}'),
-        put("mechanisms/arm/a.json", '{"turns": 3}'),
+        write_file("mechanisms/arm/a.json", '{"turns": 2}'),
+        write_file("mechanisms/arm/a.json", '{"turns": 3}'),
     ),
     "a file elsewhere": (
         "shot = Shot(turns=int((HERE.parents[2] / 'measured.txt').read_text()))\n",
-        put("../measured.txt", "2"),
-        put("../measured.txt", "3"),
+        write_file("../measured.txt", "2"),
+        write_file("../measured.txt", "3"),
     ),
     "a file read by a module": (
         "from mechanisms.arm.helper import turns\nshot = Shot(turns=turns())\n",
         both(
-            put(CSV, "2"),
-            put(
+            write_file(CSV, "2"),
+            write_file(
                 "mechanisms/arm/helper.py",
                 "from pathlib import Path\nFILE = Path(__file__).with_name('turns.csv')\n"
                 "def turns():\n    return int(FILE.read_text())\n",
             ),
         ),
-        put(CSV, "3"),
+        write_file(CSV, "3"),
     ),
     "a file that was not there": (
         FALLBACK.format(read="(HERE / 'turns.csv').read_text()"),
         lambda project: None,
-        put(CSV, "3"),
+        write_file(CSV, "3"),
     ),
     "a file that is gone": (
         FALLBACK.replace("turns = 2", "turns = 3").format(read="(HERE / 'turns.csv').read_text()"),
-        put(CSV, "2"),
+        write_file(CSV, "2"),
         lambda project: (project.root / CSV).unlink(),
     ),
     "whether a file exists": (
         "shot = Shot(turns=3 if (HERE / 'long').exists() else 2)\n",
         lambda project: None,
-        put("mechanisms/arm/long", ""),
+        write_file("mechanisms/arm/long", ""),
     ),
     "what is in a folder": (
         "shot = Shot(turns=len(list(HERE.glob('*.txt'))))\n",
-        both(put("mechanisms/arm/a.txt", ""), put("mechanisms/arm/b.txt", "")),
-        put("mechanisms/arm/c.txt", ""),
+        both(write_file("mechanisms/arm/a.txt", ""), write_file("mechanisms/arm/b.txt", "")),
+        write_file("mechanisms/arm/c.txt", ""),
     ),
     "a variable": ("import os\nshot = Shot(turns=int(os.environ['TURNS']))\n", setenv("2"), setenv("3")),
     "a variable that was not set": (
@@ -158,8 +158,8 @@ CASES: dict[str, tuple[str, Callable[[Project], None], Callable[[Project], None]
     ),
     "a file given to a program": (
         "import subprocess\nshot = Shot(turns=int(subprocess.check_output(['cat', str(HERE / 'turns.csv')])))\n",
-        put(CSV, "2"),
-        put(CSV, "3"),
+        write_file(CSV, "2"),
+        write_file(CSV, "3"),
     ),
 }
 
@@ -175,7 +175,7 @@ def test_a_change_of_what_is_read_runs_the_stage_again_and_a_touch_does_not(
     for file in project.root.parent.rglob("*"):
         os.utime(file, (1e9, 1e9))
     (project.folder / "notes.md").write_text("read by nobody") if "glob" not in text else None
-    put("mechanisms/other/unused.py", "TURNS = 9\n")(project)
+    write_file("mechanisms/other/unused.py", "TURNS = 9\n")(project)
     project.patch.setenv("UNUSED", "9")
     assert not project.run()
     then(project)
@@ -183,7 +183,7 @@ def test_a_change_of_what_is_read_runs_the_stage_again_and_a_touch_does_not(
     assert not project.run()
 
 
-def test_what_the_run_itself_writes_does_not_count(project: Project) -> None:
+def test_files_that_the_run_writes_do_not_count(project: Project) -> None:
     project.shot(
         "import tempfile, os\n"
         "with tempfile.TemporaryDirectory() as folder:\n"
@@ -203,7 +203,7 @@ def test_what_the_run_itself_writes_does_not_count(project: Project) -> None:
 
 
 def test_a_dependency_that_is_gone_runs_the_stage_again(project: Project) -> None:
-    put("mechanisms/arm/helper.py", "TURNS = 2\n")(project)
+    write_file("mechanisms/arm/helper.py", "TURNS = 2\n")(project)
     project.shot("from mechanisms.arm.helper import TURNS\nshot = Shot(turns=TURNS)\n")
     assert project.run()
     (project.folder / "helper.py").unlink()
@@ -217,9 +217,9 @@ def test_a_copy_of_the_project_elsewhere_has_the_same_keys(tmp_path: Path, monke
         with monkeypatch.context() as patch:
             patch.setenv("MBSD_OUT", str(tmp_path / place / "results"))
             project = Project(tmp_path / place, patch, shot_stage)
-            put("mechanisms/arm/helper.py", "TURNS = 2\n")(project)
-            put(CSV, "2")(project)
-            put("../measured.txt", "2")(project)
+            write_file("mechanisms/arm/helper.py", "TURNS = 2\n")(project)
+            write_file(CSV, "2")(project)
+            write_file("../measured.txt", "2")(project)
             project.shot(
                 "from mechanisms.arm.helper import TURNS\n(HERE / 'turns.csv').read_text()\n"
                 "(HERE.parents[2] / 'measured.txt').read_text()\nlist(HERE.glob('*'))\nshot = Shot(turns=TURNS)\n"
@@ -235,7 +235,7 @@ def test_an_edit_within_a_second_that_keeps_the_size_is_seen_in_helpers_too(proj
     """Python's own cache of compiled files would miss it, and the stamp would then say that all is new."""
     project.shot("from mechanisms.arm.laws.film import TURNS\nshot = Shot(turns=TURNS)\n")
     for count in (2, 3):
-        put("mechanisms/arm/laws/film.py", f"TURNS = {count}\n")(project)
+        write_file("mechanisms/arm/laws/film.py", f"TURNS = {count}\n")(project)
         os.utime(project.folder / "laws" / "film.py", (1e9, 1e9))
         project.run()
         assert turns() == count

@@ -1,4 +1,4 @@
-"""What the parts and the motion follow from beyond their own file: helpers, measured data, CAD files, and no more."""
+"""Inputs of parts and motion beyond their own file: helpers, measured data, CAD files, and no more."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from shared.contract import read_motion, read_parts
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, Out
 from shared.stage.stages import Stage
-from tests.mechanisms.author_project import Project, put
+from tests.mechanisms.author_project import Project, write_file
 
 MECHANISM = """
 from dataclasses import dataclass
@@ -58,9 +58,9 @@ def parts(p: Params) -> dict[str, list[Solid]]:
 
 """
 HELPER = "mechanisms/arm/helper.py"
-WIDER = put("mechanisms/arm/mechanism.py", MECHANISM.replace("WIDTH = 8.0", "WIDTH = 9.0"))
-FASTER = put("mechanisms/arm/mechanism.py", MECHANISM.replace("speed: float = 6.0", "speed: float = 7.0"))
-LONGER = put("mechanisms/arm/mechanism.py", MECHANISM.replace("length: float = 0.04", "length: float = 0.05"))
+WIDER = write_file("mechanisms/arm/mechanism.py", MECHANISM.replace("WIDTH = 8.0", "WIDTH = 9.0"))
+FASTER = write_file("mechanisms/arm/mechanism.py", MECHANISM.replace("speed: float = 6.0", "speed: float = 7.0"))
+LONGER = write_file("mechanisms/arm/mechanism.py", MECHANISM.replace("length: float = 0.04", "length: float = 0.05"))
 
 
 def step_file(width: float) -> Callable[[Project], None]:
@@ -79,7 +79,7 @@ def nothing(project: Project) -> None:
 @pytest.fixture
 def parts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, out_root: Path) -> Project:
     project = Project(tmp_path / "project", monkeypatch, parts_stage)
-    put("mechanisms/arm/mechanism.py", MECHANISM)(project)
+    write_file("mechanisms/arm/mechanism.py", MECHANISM)(project)
     return project
 
 
@@ -110,20 +110,20 @@ CASES: dict[str, tuple[str, Callable[[Project], None], Callable[[Project], None]
     ),
     "a helper that uses mechanism.py": (
         "from mechanisms.arm.helper import width\ndef arm(p):\n    return box(40.0, width())\n",
-        put(HELPER, "def width():\n    from mechanisms.arm.mechanism import WIDTH\n    return WIDTH\n"),
+        write_file(HELPER, "def width():\n    from mechanisms.arm.mechanism import WIDTH\n    return WIDTH\n"),
         WIDER,
         True,
     ),
     "a helper": (
         "from mechanisms.arm.helper import WIDTH\ndef arm(p):\n    return box(40.0, WIDTH)\n",
-        put(HELPER, "WIDTH = 8.0\n"),
-        put(HELPER, "WIDTH = 9.0\n"),
+        write_file(HELPER, "WIDTH = 8.0\n"),
+        write_file(HELPER, "WIDTH = 9.0\n"),
         True,
     ),
     "measured data": (
         "import numpy as np\ndef arm(p):\n    return box(40.0, float(np.loadtxt(HERE / 'width.csv')))\n",
-        put("mechanisms/arm/width.csv", "8"),
-        put("mechanisms/arm/width.csv", "9"),
+        write_file("mechanisms/arm/width.csv", "8"),
+        write_file("mechanisms/arm/width.csv", "9"),
         True,
     ),
     "a STEP file, which the kernel opens by itself": (
@@ -139,7 +139,7 @@ CASES: dict[str, tuple[str, Callable[[Project], None], Callable[[Project], None]
 def test_parts_follow_from_what_parts_py_uses(
     parts: Project, text: str, first: Callable[[Project], None], change: Callable[[Project], None], again: bool
 ) -> None:
-    put("mechanisms/arm/parts.py", PARTS + text)(parts)
+    write_file("mechanisms/arm/parts.py", PARTS + text)(parts)
     first(parts)
     assert parts.run()
     before = read_parts(Out("arm").parts).bodies["arm"].mass.mass
@@ -152,10 +152,10 @@ def test_parts_follow_from_what_parts_py_uses(
     assert not parts.run()
 
 
-def test_of_shot_py_its_mount_alone_counts(parts: Project) -> None:
-    """What it imports and reads counts only where parts.py does so too, which then finds it as new."""
-    put("mechanisms/arm/parts.py", PARTS + CASES["a helper"][0])(parts)
-    put(HELPER, "WIDTH = 8.0\n")(parts)
+def test_only_the_mount_of_shot_py_counts(parts: Project) -> None:
+    """Its imports and its files count only where parts.py has them too, which then finds them as new."""
+    write_file("mechanisms/arm/parts.py", PARTS + CASES["a helper"][0])(parts)
+    write_file(HELPER, "WIDTH = 8.0\n")(parts)
     camera = "from shared.shot import Camera\nfrom mechanisms.arm.helper import WIDTH\n"
     steps = [
         ("shot = Shot()", "desk", True),
@@ -179,11 +179,11 @@ def test_of_shot_py_its_mount_alone_counts(parts: Project) -> None:
 
 def test_solids_by_hand_that_stand_follow_gravity(parts: Project) -> None:
     """mechanism.py counts for them then."""
-    put("mechanisms/arm/parts.py", PARTS + BY_VALUE)(parts)
+    write_file("mechanisms/arm/parts.py", PARTS + BY_VALUE)(parts)
     parts.shot("shot = Shot(mount='ground')")
     assert parts.run()
     assert read_parts(Out("arm").parts).mount.up == (0.0, 1.0, 0.0)
-    put("mechanisms/arm/mechanism.py", MECHANISM.replace('("arm")', '("arm", gravity=(9.81, 0.0))'))(parts)
+    write_file("mechanisms/arm/mechanism.py", MECHANISM.replace('("arm")', '("arm", gravity=(9.81, 0.0))'))(parts)
     assert parts.run()
     assert read_parts(Out("arm").parts).mount.up == (-1.0, 0.0, 0.0)
 
@@ -192,17 +192,17 @@ def test_solids_by_hand_that_stand_follow_gravity(parts: Project) -> None:
 def test_a_mount_of_parts_py_that_cannot_be_is_refused(parts: Project, said: str) -> None:
     text = BY_VALUE + "_plain = parts\ndef parts(p: Params):\n    from shared.shapes.bodies import Bodies\n"
     text += f"    made = Bodies(_plain(p))\n    made.mount = {said}\n    return made\n"
-    put("mechanisms/arm/parts.py", PARTS + text)(parts)
+    write_file("mechanisms/arm/parts.py", PARTS + text)(parts)
     with pytest.raises(UserError, match=r"arm: parts\(\): mount is"):
         parts.run()
-    put("mechanisms/arm/parts.py", PARTS + text.replace(said, "('wall', (0.6, 0.8, 0.0))"))(parts)
+    write_file("mechanisms/arm/parts.py", PARTS + text.replace(said, "('wall', (0.6, 0.8, 0.0))"))(parts)
     assert parts.run()
     assert read_parts(Out("arm").parts).mount.kind == "wall"
 
 
 def test_where_mechanism_py_counts_the_solver_counts_that_it_imports(parts: Project) -> None:
     for text, counts in ((BY_VALUE, []), (CASES["a method of the parameters"][0], ["mbsd"])):
-        put("mechanisms/arm/parts.py", PARTS + text)(parts)
+        write_file("mechanisms/arm/parts.py", PARTS + text)(parts)
         assert parts.run()
         assert Stage(Out("arm"), "parts", "", []).notes()["inputs"]["sources"] == counts
 
@@ -210,13 +210,13 @@ def test_where_mechanism_py_counts_the_solver_counts_that_it_imports(parts: Proj
 def test_parameters_from_measured_data_count_by_their_value(parts: Project) -> None:
     """mechanism.py reads the file when it is loaded; parts.py gets the number."""
     text = MECHANISM.replace("0.04", "float((Path(__file__).parent / 'length.txt').read_text())")
-    put("mechanisms/arm/mechanism.py", text)(parts)
-    put("mechanisms/arm/parts.py", PARTS + BY_VALUE)(parts)
-    put("mechanisms/arm/length.txt", "0.04")(parts)
+    write_file("mechanisms/arm/mechanism.py", text)(parts)
+    write_file("mechanisms/arm/parts.py", PARTS + BY_VALUE)(parts)
+    write_file("mechanisms/arm/length.txt", "0.04")(parts)
     assert parts.run()
-    put("mechanisms/arm/length.txt", "0.0400")(parts)
+    write_file("mechanisms/arm/length.txt", "0.0400")(parts)
     assert not parts.run()
-    put("mechanisms/arm/length.txt", "0.05")(parts)
+    write_file("mechanisms/arm/length.txt", "0.05")(parts)
     assert parts.run()
 
 
@@ -226,20 +226,20 @@ MOTION: dict[str, tuple[str, str, Callable[[Project], None], Callable[[Project],
     "a helper": (
         "constant_rate(p.speed)",
         "constant_rate(__import__('mechanisms.arm.helper', fromlist=['x']).SPEED)",
-        put(HELPER, "SPEED = 6.0\n"),
-        put(HELPER, "SPEED = 7.0\n"),
+        write_file(HELPER, "SPEED = 6.0\n"),
+        write_file(HELPER, "SPEED = 7.0\n"),
     ),
     "a file that build() reads": (
         "constant_rate(p.speed)",
         "constant_rate(float((Path(__file__).parent / 'speed.txt').read_text()))",
-        put("mechanisms/arm/speed.txt", "6"),
-        put("mechanisms/arm/speed.txt", "7"),
+        write_file("mechanisms/arm/speed.txt", "6"),
+        write_file("mechanisms/arm/speed.txt", "7"),
     ),
     "a file that motion() reads": (
         "m.sweep(steps=12)",
         "m.sweep(steps=int((Path(__file__).parent / 'steps.txt').read_text()))",
-        put("mechanisms/arm/steps.txt", "12"),
-        put("mechanisms/arm/steps.txt", "13"),
+        write_file("mechanisms/arm/steps.txt", "12"),
+        write_file("mechanisms/arm/steps.txt", "13"),
     ),
     "a model that the solver loads": (
         "m.sweep(steps=12)",
@@ -271,18 +271,18 @@ def test_the_motion_follows_from_what_mechanism_py_uses(
 ) -> None:
     with monkeypatch.context() as patch:
         made = Project(tmp_path / "made", patch, parts_stage)
-        put("mechanisms/arm/mechanism.py", MECHANISM)(made)
-        put("mechanisms/arm/parts.py", PARTS + BY_VALUE)(made)
+        write_file("mechanisms/arm/mechanism.py", MECHANISM)(made)
+        write_file("mechanisms/arm/parts.py", PARTS + BY_VALUE)(made)
         made.run()
     project = Project(tmp_path / "project", monkeypatch, solve_stage)
     assert old in MECHANISM
-    put("mechanisms/arm/mechanism.py", MECHANISM.replace(old, new))(project)
+    write_file("mechanisms/arm/mechanism.py", MECHANISM.replace(old, new))(project)
     first(project)
     assert project.run()
     before = read_motion(Out("arm").motion)
     for file in project.folder.iterdir():
         os.utime(file, (1e9, 1e9))
-    put("mechanisms/arm/notes.md", "read by nobody")(project)
+    write_file("mechanisms/arm/notes.md", "read by nobody")(project)
     assert not project.run()
     change(project)
     assert project.run()

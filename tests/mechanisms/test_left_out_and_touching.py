@@ -145,7 +145,7 @@ def test_pieces_may_touch_and_all_else_of_their_bodies_is_compared(
     assert "Pieces that touch by design were not compared with each other: base and crank; crank and slider." in text
 
 
-def test_what_is_not_said_is_proven(project: Project) -> None:
+def test_pairs_that_are_not_named_are_proven(project: Project) -> None:
     (project.folder / "parts.py").write_text(BLOCKS + SAID.replace('    made.may_touch("slider", "crank")\n', ""))
     project.run()
     solve_stage.run("arm")
@@ -188,7 +188,7 @@ def test_words_that_fit_nothing_are_refused() -> None:
         refuse_unfit("arm", made)
 
 
-def test_what_was_said_survives_more_solids() -> None:
+def test_statements_survive_more_solids() -> None:
     made = _solids("crank", "slider")
     made.leave_out("rod")
     made.may_touch("slider", "crank")

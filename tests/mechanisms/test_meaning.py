@@ -10,7 +10,7 @@ from mbsd.dependencies.inputs import looks_at_itself, meaning
 from mechanisms.stages import shot as shot_stage
 from mechanisms.stages.solve import stage as solve_stage
 from shared.stage.paths import Out
-from tests.mechanisms.author_project import Project, put
+from tests.mechanisms.author_project import Project, write_file
 
 SOURCE = '''"""An arm."""
 from math import pi
@@ -63,18 +63,18 @@ OTHER = {
 
 
 @pytest.mark.parametrize("change", SAME)
-def test_what_means_the_same_has_the_same_hash(change: str) -> None:
+def test_equal_meanings_have_equal_hashes(change: str) -> None:
     assert SAME[change][0] in SOURCE
     assert meaning(SOURCE.replace(*SAME[change]).encode()) == meaning(SOURCE.encode())
 
 
 @pytest.mark.parametrize("change", OTHER)
-def test_what_means_something_else_has_another_hash(change: str) -> None:
+def test_other_meanings_have_other_hashes(change: str) -> None:
     assert OTHER[change][0] in SOURCE
     assert meaning(SOURCE.replace(*OTHER[change]).encode()) != meaning(SOURCE.encode())
 
 
-def test_what_is_no_python_counts_by_its_bytes() -> None:
+def test_files_that_are_no_python_count_by_their_bytes() -> None:
     assert meaning(b"def (:") != meaning(b"def (: ")
     assert meaning(b"\xff\xfe\x00") != meaning(b"\xff\xfe\x01")
 
@@ -89,15 +89,15 @@ SHOT = "from mechanisms.arm.helper import turns\nshot = Shot(turns=turns())\n"
 
 
 def test_a_comment_in_a_module_runs_no_stage(project: Project) -> None:
-    put(HELPER, "def turns():\n    return 2\n")(project)
+    write_file(HELPER, "def turns():\n    return 2\n")(project)
     project.shot(SHOT)
     assert project.run()
     key = Out("arm").stamps.joinpath("shot.json").read_bytes()
-    put(HELPER, '"""How often."""\n\n\ndef turns():  # of the crank\n    return (2)\n')(project)
+    write_file(HELPER, '"""How often."""\n\n\ndef turns():  # of the crank\n    return (2)\n')(project)
     project.shot("# what is filmed\n" + SHOT)
     assert not project.run()
     assert Out("arm").stamps.joinpath("shot.json").read_bytes() == key
-    put(HELPER, "def turns():\n    return 3\n")(project)
+    write_file(HELPER, "def turns():\n    return 3\n")(project)
     assert project.run()
 
 
@@ -111,11 +111,11 @@ def test_a_comment_in_a_module_runs_no_stage(project: Project) -> None:
     ],
     ids=["a docstring", "its source", "its text"],
 )  # fmt: skip
-def test_what_a_file_says_counts_where_it_is_read(project: Project, shot: str, before: str, after: str) -> None:
-    put(HELPER, before)(project)
+def test_docstrings_count_where_they_are_read(project: Project, shot: str, before: str, after: str) -> None:
+    write_file(HELPER, before)(project)
     project.shot(shot)
     assert project.run()
-    put(HELPER, after)(project)
+    write_file(HELPER, after)(project)
     assert project.run()
 
 
@@ -128,11 +128,11 @@ def test_a_module_that_is_loaded_by_its_path_counts(project: Project) -> None:
         "spec.loader.exec_module(film)\n"
         "shot = Shot(turns=film.TURNS)\n"
     )
-    put(HELPER, "TURNS = 2\n")(project)
+    write_file(HELPER, "TURNS = 2\n")(project)
     assert project.run()
-    put(HELPER, "TURNS = 2  # turns\n")(project)
+    write_file(HELPER, "TURNS = 2  # turns\n")(project)
     assert not project.run()
-    put(HELPER, "TURNS = 30\n")(project)
+    write_file(HELPER, "TURNS = 30\n")(project)
     assert project.run()
 
 
@@ -149,13 +149,13 @@ def test_a_comment_in_mechanism_py_solves_nothing_anew(
         "    m.drive_angle('motor', arm, constant_rate(6.0))\n    return m\n\n"
         "def motion(m, p):\n    return m.sweep(steps=4)\n"
     )
-    put("mechanisms/arm/mechanism.py", text)(project)
+    write_file("mechanisms/arm/mechanism.py", text)(project)
     assert project.run()
     made = Out("arm").motion.read_bytes()
-    put("mechanisms/arm/mechanism.py", text.replace('"""An arm."""', "# An arm.\n\n").replace("'", '"'))(project)
+    write_file("mechanisms/arm/mechanism.py", text.replace('"""An arm."""', "# An arm.\n\n").replace("'", '"'))(project)
     assert not project.run()
     assert Out("arm").motion.read_bytes() == made
-    put("mechanisms/arm/mechanism.py", text.replace("6.0", "6.5"))(project)
+    write_file("mechanisms/arm/mechanism.py", text.replace("6.0", "6.5"))(project)
     assert project.run()
     assert Out("arm").motion.read_bytes() != made
 

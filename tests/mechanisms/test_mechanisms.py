@@ -53,7 +53,7 @@ SLOW = {
     scope="module",
     params=[pytest.param(name, marks=[pytest.mark.slow] if name in SLOW else []) for name in mechanism_names()],
 )
-def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, warm: Warm) -> tuple[str, Path]:
+def products(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, warm: Warm) -> tuple[str, Path]:
     """All stages before the pictures, run as a user runs them."""
     root = tmp_path_factory.mktemp(request.param)
     for stage in STAGES:
@@ -63,9 +63,9 @@ def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
 
 
 @pytest.fixture
-def out(made: tuple[str, Path], monkeypatch: pytest.MonkeyPatch) -> Out:
-    monkeypatch.setenv("MBSD_OUT", str(made[1]))
-    return Out(made[0])
+def out(products: tuple[str, Path], monkeypatch: pytest.MonkeyPatch) -> Out:
+    monkeypatch.setenv("MBSD_OUT", str(products[1]))
+    return Out(products[0])
 
 
 def test_it_closes_and_its_drivers_fix_every_freedom(out: Out) -> None:
@@ -190,24 +190,26 @@ def test_the_shot_names_what_there_is(out: Out) -> None:
     )
 
 
-def test_a_second_run_has_nothing_to_do(made: tuple[str, Path], warm: Warm) -> None:
-    name, root = made
+def test_a_second_run_has_nothing_to_do(products: tuple[str, Path], warm: Warm) -> None:
+    name, root = products
     before = {path: path.read_bytes() for path in sorted(root.rglob("*.json"))}
     for stage in STAGES:
         assert "nothing to do" in warm.run("mechanisms", stage, name, MBSD_OUT=str(root)).stdout
     assert {path: path.read_bytes() for path in sorted(root.rglob("*.json"))} == before
 
 
-def test_solving_anew_gives_the_same_bytes(made: tuple[str, Path], out: Out, warm: Warm) -> None:
+def test_solving_anew_gives_the_same_bytes(products: tuple[str, Path], out: Out, warm: Warm) -> None:
     before = out.motion.read_bytes()
     out.motion.unlink()
-    assert warm.run("mechanisms", "solve", made[0], MBSD_OUT=str(made[1])).returncode == 0
+    assert warm.run("mechanisms", "solve", products[0], MBSD_OUT=str(products[1])).returncode == 0
     assert out.motion.read_bytes() == before
 
 
 def test_it_fills_wide_and_tall_pictures_and_its_words_have_room(out: Out) -> None:
-    """Of width or height four fifths, measured on coarse solids, springs and belts over the film; with titles and all
-    arrows at once, too, nothing that is written overlaps or leaves the picture.
+    """The mechanism fills four fifths of the width or height, and nothing written overlaps.
+
+    It is measured on coarse solids, springs and belts over the film; with titles and all arrows at once, too, nothing
+    that is written overlaps or leaves the picture.
     """
     for aspect in (WIDE, "9:16"):
         shape = PRESETS["draft"].framed(aspect).aspect
@@ -239,11 +241,13 @@ def test_its_motion_closes_at_all_times_and_has_no_gaps(name: str) -> None:
 
 
 def test_params_of_the_gallery_are_kept(tmp_path: Path) -> None:
-    def made(crank: float) -> mbsd.Mechanism:
+    def build_crank(crank: float) -> mbsd.Mechanism:
         return build(Params(crank=crank))
 
     points = {"crank": [0.03, 0.04]}
     for _ in range(2):
-        table = mbsd.study(made, points, lambda m: {"n": len(m.bodies)}, folder=tmp_path, processes=1, progress=False)
+        table = mbsd.study(
+            build_crank, points, lambda m: {"n": len(m.bodies)}, folder=tmp_path, processes=1, progress=False
+        )
         assert list(table["n"]) == [4, 4]
     assert len(list(tmp_path.rglob("*.jsonl"))) == 1

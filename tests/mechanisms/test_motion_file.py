@@ -238,7 +238,7 @@ REFUSED: dict[str, tuple[Edit, str]] = {
 
 
 @pytest.mark.parametrize(("edit", "words"), REFUSED.values(), ids=REFUSED)
-def test_what_does_not_hold_together_is_refused(loaded: Solution, tmp_path: Path, edit: Edit, words: str) -> None:
+def test_inconsistent_files_are_refused(loaded: Solution, tmp_path: Path, edit: Edit, words: str) -> None:
     document = json.loads(jsonfile.encode(to_motion(loaded, None, "key", {}, {"arm": "mechanism"})))
     edited = copy.deepcopy(document)
     edit(edited)

@@ -93,7 +93,7 @@ def test_an_unknown_kind_is_refused_with_the_known_ones() -> None:
         new.run("my_linkage", "simulatd")
 
 
-def test_what_exists_is_not_touched() -> None:
+def test_existing_files_are_not_touched() -> None:
     before = (MECHANISMS / "four_bar" / "mechanism.py").read_bytes()
     with pytest.raises(UserError, match=r"mechanisms/four_bar/mechanism.py is there already"):
         new.run("four-bar")

@@ -16,6 +16,7 @@ from tools.hunt.agreement import Words, compare_driven
 from tools.hunt.outcome import AGREED, WRONG
 from tools.hunt.simulating import RUNS
 from tools.hunt.sweeping import SWEEPS
+from tools.models import linkages
 from tools.random_mechanisms.families import all_families
 from tools.random_mechanisms.registry import loaded
 from tools.random_mechanisms.similar import in_units, mirrored, renamed
@@ -71,17 +72,11 @@ def test_no_mechanism_of_the_gallery_depends_on_the_words(monkeypatch: pytest.Mo
 
 
 def four_bar(crank: float, coupler: float, tracer: tuple[float, float], mass: float) -> Mechanism:
-    m = Mechanism("four_bar")
-    a, b, c = m.bar("crank", crank, mass=mass), m.bar("coupler", coupler, mass=0.3), m.bar("rocker", 0.3, mass=0.2)
-    m.revolute("A", m.ground.at(0, 0), a.start)
-    m.revolute("B", a.end, b.start)
-    m.revolute("C", b.end, c.end)
-    m.revolute("D", m.ground.at(0.4, 0.02), c.start)
+    lengths, masses, law = (crank, coupler, 0.3), (mass, 0.3, 0.2), constant_rate(6.0)
+    m = linkages.four_bar((0.4, 0.02), *lengths, (45, 90), masses=masses, law=law, traced=tracer)
+    b, c = m.bodies["coupler"], m.bodies["rocker"]
     m.spring("pull", m.ground.at(0.0, 0.5), b.at(*tracer), stiffness=80.0, free_length=0.2, damping=0.4)
     m.torsion_spring("twist", m.ground, c, 0.3, damping=0.01, free_angle=0.7)
-    m.drive_angle("motor", a, constant_rate(6.0))
-    m.trace("P", b.at(*tracer))
-    m.start_near(crank=0, coupler=45, rocker=90)
     return m
 
 

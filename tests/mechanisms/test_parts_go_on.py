@@ -22,7 +22,7 @@ def press(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Press:
 
 
 def meshed(monkeypatch: pytest.MonkeyPatch, stop_after: int | None = None) -> list[object]:
-    """What is meshed from now on; after so many pieces the user stops it."""
+    """Yield the list of pieces meshed from now on; after so many pieces the user stops it."""
     made: list[object] = []
 
     def counting(shape: object, tolerance: float | None = None) -> bytes:
@@ -35,7 +35,7 @@ def meshed(monkeypatch: pytest.MonkeyPatch, stop_after: int | None = None) -> li
     return made
 
 
-def test_what_was_stopped_goes_on_from_there(press: Press, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_stopped_stage_goes_on_from_there(press: Press, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(memory.KeptPieces.__init__, "__defaults__", (0.0,))
     total = sum(map(len, solids().values()))
     meshed(monkeypatch, stop_after=7)
@@ -123,7 +123,7 @@ def test_a_change_is_looked_at_anew(press: Press, monkeypatch: pytest.MonkeyPatc
     assert not list(Out("four_bar").stamps.glob("*refused*"))
 
 
-def test_what_is_refused_soon_or_by_the_disk_is_tried_again(press: Press, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_quick_refusals_and_those_of_the_disk_are_tried_again(press: Press, monkeypatch: pytest.MonkeyPatch) -> None:
     soon = Refusing(press)
     for _ in range(2):
         with pytest.raises(UserError, match=r"^four_bar: no order of layers$"):
@@ -163,7 +163,7 @@ def test_a_model_is_made_once(press: Press, capsys: pytest.CaptureFixture[str]) 
     assert capsys.readouterr().out.splitlines()[-1] == "parts: four_bar at 1:2: nothing to do"
 
 
-def test_what_takes_long_is_shown_with_what_is_left(
+def test_long_stages_show_the_time_that_is_left(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     now = [0.0]

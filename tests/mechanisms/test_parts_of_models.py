@@ -57,7 +57,7 @@ def test_only_a_simulation_without_masses_needs_the_machine(
     assert needs_masses("bar") is (mass is None)
 
 
-def test_what_is_refused_is_left_to_the_machines_own_stage(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_refused_parts_are_left_to_the_stage_at_full_size(monkeypatch: pytest.MonkeyPatch) -> None:
     def refused(*_: object) -> None:
         raise UserError("no")
 
@@ -97,13 +97,13 @@ def _recorded(monkeypatch: pytest.MonkeyPatch, sides: list[float]) -> list[dict[
         asked.append(None if masses is None else {body: mass.mass for body, mass in masses.items()})
         return bare_solution(name, masses)
 
-    def made(m: Mechanism, solution: Any) -> Any:
+    def build_parts(m: Mechanism, solution: Any) -> Any:
         side = sides[min(len(asked), len(sides)) - 1]
         cube = [Solid("arm", cq.Workplane().box(side, side, side), "steel", 0)]
         return SimpleNamespace(solids=lambda: {"ground": cube, "arm": cube})
 
     monkeypatch.setattr(automatic_solids, "bare_solution", solved)
-    monkeypatch.setattr(automatic, "automatic", made)
+    monkeypatch.setattr(automatic, "automatic", build_parts)
     return asked
 
 
@@ -169,7 +169,7 @@ def test_a_load_is_a_piece_of_no_mass() -> None:
     assert appended.mass.mass == pytest.approx(alone.mass.mass + dressed.pieces["load"].mass.mass)
 
 
-def test_what_is_said_survives_a_union() -> None:
+def test_statements_survive_a_union() -> None:
     made = Bodies(arm=[bar_dressing()])
     made.dress("arm", load())
     assert [solid.dressing for solid in (made | {"ground": [bar_dressing()]})["arm"]] == [False, True]

@@ -41,7 +41,7 @@ from shared.stage import jsonfile, paths
 from shared.stage.errors import UserError
 from shared.stage.files import is_abandoned
 from shared.stage.paths import ROOT
-from tests.mechanisms.author_project import Project, put
+from tests.mechanisms.author_project import Project, write_file
 from tests.mechanisms.test_inputs_of_parts import MECHANISM, PARTS
 
 # Parts by a scheduler and three workers on loopback, the one at work killed: the same bytes as here.
@@ -54,10 +54,10 @@ WIDE = "def arm(p):\n    return box(1000 * p.length, float((HERE / 'data' / 'wid
 def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, out_root: Path) -> Project:
     """A mechanism whose parts.py reads a file beside it."""
     project = Project(tmp_path / "project", monkeypatch, parts_stage)
-    put("mechanisms/arm/mechanism.py", MECHANISM)(project)
-    put("mechanisms/arm/parts.py", PARTS + WIDE)(project)
-    put("mechanisms/arm/data/width.txt", "7.5")(project)
-    put("mechanisms/other/large.step", "not for others")(project)
+    write_file("mechanisms/arm/mechanism.py", MECHANISM)(project)
+    write_file("mechanisms/arm/parts.py", PARTS + WIDE)(project)
+    write_file("mechanisms/arm/data/width.txt", "7.5")(project)
+    write_file("mechanisms/other/large.step", "not for others")(project)
     return project
 
 
@@ -119,14 +119,14 @@ def test_a_killed_worker_loses_no_parts_and_changes_none(
 
 
 @pytest.mark.parametrize("change", ["the disk has another file", "the worker refuses"])
-def test_what_a_worker_cannot_tell_is_made_here(
+def test_parts_that_a_worker_cannot_build_are_built_here(
     project: Project, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], out_root: Path, change: str
 ) -> None:
     assert project.run()
     here, stamp = files(out_root / "arm"), parts_stage.Stage(parts_stage.Out("arm"), "parts", "", [])
     solids = {name.removeprefix("parts/"): content for name, content in here.items() if name.startswith("parts/")}
     made = WorkerParts(solids.pop("parts.json"), dict.fromkeys(solids, b"other"), stamp.notes())
-    put("mechanisms/arm/data/width.txt", "9.0")(project)
+    write_file("mechanisms/arm/data/width.txt", "9.0")(project)
     monkeypatch.setenv("CLUSTER", "tcp://127.0.0.1:1")
     monkeypatch.setattr(dealt, "made_elsewhere", lambda *_: made if "disk" in change else None)
     assert project.run()
@@ -137,19 +137,30 @@ def test_what_a_worker_cannot_tell_is_made_here(
 
 
 def test_files_of_authors_travel_and_no_others(project: Project) -> None:
-    put("mechanisms/arm/__pycache__/parts.cpython-313.pyc", "")(project)
-    put("mechanisms/stages/new/new.py", "")(project)
-    put("mechanisms/automatic.py", "")(project)
-    put("mechanisms/helper.py", "")(project)
+    write_file("mechanisms/arm/__pycache__/parts.cpython-313.pyc", "")(project)
+    write_file("mechanisms/stages/new/new.py", "")(project)
+    write_file("mechanisms/automatic.py", "")(project)
+    write_file("mechanisms/helper.py", "")(project)
     (project.folder / "gone.step").symlink_to("nowhere")
     own = {f"mechanisms/arm/{name}" for name in ("mechanism.py", "parts.py", "data/width.txt")}
     assert set(collected("arm")) == own | {"mechanisms/helper.py", "mechanisms/other/mechanism.py"}
 
 
-@pytest.mark.parametrize("path", ["../x.py", "/etc/x", "shared/x.py", "mechanisms/stages/x.py", "mechanisms/../x.py"])
-def test_a_worker_writes_no_other_files(tmp_path: Path, path: str) -> None:
+OUTSIDE = [
+    (path, None) for path in ("../x.py", "/etc/x", "shared/x.py", "mechanisms/stages/x.py", "mechanisms/../x.py")
+]
+OUTSIDE += [
+    (path, "../machines")
+    for path in ("workshop:../x.py", "workshop:/etc/x", "workshop:", "../tree/shared/x.py", "workshop:a/../../x")
+]
+"""Paths, and the folder of machines to which they belong, if it is one of the user's own."""
+
+
+@pytest.mark.parametrize(("path", "own"), OUTSIDE)
+def test_a_worker_writes_no_other_files(tmp_path: Path, path: str, own: str | None) -> None:
+    tree = tmp_path / "tree"
     with pytest.raises(UserError, match="is no file of an author's"):
-        built._write_file(tmp_path / "tree", path, b"")
+        built._write_file(tree, path, b"", built.own_folder(tree, own) if own else None)
     assert not list(tmp_path.rglob("*.py"))
 
 
@@ -235,7 +246,7 @@ def test_files_of_the_mechanism_travel_and_what_they_import_and_no_others(folder
     assert set(collected("wheel")) == {"workshop:wheel.py", "workshop:lengths.py"} | LIBRARY
 
 
-def test_what_was_read_before_travels_if_it_lies_in_the_folder(folder: Path) -> None:
+def test_files_read_before_travel_if_they_lie_in_the_folder(folder: Path) -> None:
     read = ["workshop:photo.jpg", "workshop:gone.txt", "/etc/passwd", "shared/shot.py", "results:x"]
     assert set(collected("wheel", read)) - set(collected("wheel")) == {"workshop:photo.jpg"}
 
@@ -250,7 +261,7 @@ def test_a_folder_that_is_the_machine_itself_sends_its_three_files(
 
 
 def made_far(name: str, place: Path, monkeypatch: pytest.MonkeyPatch, scale: str = "") -> answer.WorkerParts:
-    """What a worker makes of contents alone, in a folder of its own."""
+    """Return what a worker builds of contents alone, in a folder of its own."""
     files = collected(name)
     hashes = {path: content_hash(content) for path, content in files.items()}
     order = Order(
@@ -296,55 +307,12 @@ def test_a_worker_that_has_contents_alone_makes_the_same_bytes(
     assert not scale or not (folder / "out" / name / "parts").exists(), "none of full size are made for a model"
 
 
-@pytest.mark.parametrize(
-    "path", ["workshop:../x.py", "workshop:/etc/x", "workshop:", "../tree/shared/x.py", "workshop:a/../../x"]
-)
-def test_a_worker_writes_no_file_outside_the_copy_of_the_folder(tmp_path: Path, path: str) -> None:
-    tree = tmp_path / "tree"
-    with pytest.raises(UserError, match="is no file of an author's"):
-        built._write_file(tree, path, b"", built.own_folder(tree, "../machines"))
-    assert not list(tmp_path.rglob("*.py"))
-
-
 def test_functions_of_a_mechanism_run_where_its_folder_is_not(folder: Path) -> None:
     """A worker of a study gets build() and measure() alone, and may have been started in a folder of its own."""
     with author_code("arm"):
         pass
     with pytest.raises(ZeroDivisionError), author_code("elsewhere"):
         raise ZeroDivisionError
-
-
-@pytest.fixture
-def cluster_of_own(tmp_path: Path) -> Iterator[Any]:
-    """A scheduler and two workers, each a process with a nanny that starts it again."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("MBSD_OUT", str(tmp_path / "workers"))
-        with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster_of_own:
-            yield cluster_of_own
-
-
-@pytest.mark.slow
-def test_a_killed_worker_loses_no_parts_of_an_own_folder(folder: Path, cluster_of_own: Any, tmp_path: Path) -> None:
-    killed: list[int] = []
-
-    def kill() -> None:
-        """The worker that has begun a stage."""
-        while not killed:
-            for worker in cluster_of_own.workers.values():
-                if worker.pid and any("parts" in child.cmdline() for child in psutil.Process(worker.pid).children()):
-                    killed.append(worker.pid)
-                    os.kill(worker.pid, signal.SIGKILL)
-                    return
-            time.sleep(0.02)
-
-    threading.Thread(target=kill, daemon=True).start()
-    far = {"CLUSTER": cluster_of_own.scheduler_address, "MBSD_OUT": str(tmp_path / "far")}
-    done = mbsd(folder, "parts", "arm", **far)
-    assert killed
-    assert "parts: arm: made by worker tcp://" in done.stdout, done.stderr
-    assert mbsd(folder, "parts", "arm").returncode == 0
-    assert files_in(tmp_path / "far" / "arm" / "parts") == files_in(folder / "out" / "arm" / "parts")
-    assert "nothing to do" in mbsd(folder, "parts", "arm", **far).stdout
 
 
 # Parts from workers: believed only where document, names, hashes, meshes, solids and masses hold together.
@@ -356,7 +324,7 @@ Document = dict[str, Any]
 
 
 @pytest.fixture(scope="module")
-def made() -> WorkerParts:
+def worker_parts() -> WorkerParts:
     """A bar with a hole, as a worker makes it."""
     bar = cadquery.Workplane().box(40, 10, 5).faces(">Z").workplane().hole(4)
     files: dict[str, bytes] = {}
@@ -365,78 +333,90 @@ def made() -> WorkerParts:
     return WorkerParts(jsonfile.encode(document), files, NOTES)
 
 
-def bytes_of(made: WorkerParts) -> bytes:
-    return msgspec.msgpack.encode(made)
+def bytes_of(worker_parts: WorkerParts) -> bytes:
+    return msgspec.msgpack.encode(worker_parts)
 
 
 def changed(
-    made: WorkerParts, change: Callable[[Document], object], files: dict[str, bytes] | None = None
+    worker_parts: WorkerParts, change: Callable[[Document], object], files: dict[str, bytes] | None = None
 ) -> WorkerParts:
-    document = msgspec.json.decode(made.document)
+    document = msgspec.json.decode(worker_parts.document)
     change(document)
     new = msgspec.json.format(msgspec.json.encode(document), indent=1) + b"\n"
-    return WorkerParts(new, files or made.files, made.notes)
+    return WorkerParts(new, files or worker_parts.files, worker_parts.notes)
 
 
-def with_files(made: WorkerParts, **files: bytes) -> WorkerParts:
+def with_files(worker_parts: WorkerParts, **files: bytes) -> WorkerParts:
     """Other bytes under these names, whose hash the document tells."""
-    new = made.files | {name.replace("_", "."): content for name, content in files.items()}
+    new = worker_parts.files | {name.replace("_", "."): content for name, content in files.items()}
 
     def hashed(document: Document) -> None:
         document["bodies"]["bar"]["pieces"]["bar"]["stl_sha256"] = hashlib.sha256(new["bar.stl"]).hexdigest()
 
-    return changed(made, hashed, new)
+    return changed(worker_parts, hashed, new)
 
 
 def piece(document: Document) -> Document:
     return document["bodies"]["bar"]["pieces"]["bar"]
 
 
-def test_right_parts_are_taken(made: WorkerParts) -> None:
-    assert answer.read("arm", bytes_of(made), OWN, PROGRAM) == made
+def test_right_parts_are_taken(worker_parts: WorkerParts) -> None:
+    assert answer.read("arm", bytes_of(worker_parts), OWN, PROGRAM) == worker_parts
     assert answer.read("arm", bytes_of(WorkerParts(refusal="no\x1b[2J")), OWN, PROGRAM).refusal == "no [2J"
 
 
 FALSE: dict[str, Callable[[WorkerParts], Any]] = {
-    "None": lambda made: None,
-    "a list": lambda made: [1],
-    "no document": lambda made: WorkerParts(b"", made.files, made.notes),
-    "text": lambda made: WorkerParts(b"parts", made.files, made.notes),
-    "a document cut short": lambda made: WorkerParts(made.document[:-40], made.files, made.notes),
-    "another mechanism": lambda made: changed(made, lambda d: d.update(mechanism="other")),
-    "another version": lambda made: changed(made, lambda d: d.update(schema_version=7)),
-    "other packages": lambda made: changed(made, lambda d: d["provenance"].update(versions={"cadquery": "1"})),
-    "a name with dots": lambda made: changed(
-        made, lambda d: piece(d).update(stl="../../x.stl"), {"../../x.stl": made.files["bar.stl"]}
+    "None": lambda worker_parts: None,
+    "a list": lambda worker_parts: [1],
+    "no document": lambda worker_parts: WorkerParts(b"", worker_parts.files, worker_parts.notes),
+    "text": lambda worker_parts: WorkerParts(b"parts", worker_parts.files, worker_parts.notes),
+    "a document cut short": lambda worker_parts: WorkerParts(
+        worker_parts.document[:-40], worker_parts.files, worker_parts.notes
     ),
-    "a file of another name": lambda made: changed(
-        made,
+    "another mechanism": lambda worker_parts: changed(worker_parts, lambda d: d.update(mechanism="other")),
+    "another version": lambda worker_parts: changed(worker_parts, lambda d: d.update(schema_version=7)),
+    "other packages": lambda worker_parts: changed(
+        worker_parts, lambda d: d["provenance"].update(versions={"cadquery": "1"})
+    ),
+    "a name with dots": lambda worker_parts: changed(
+        worker_parts, lambda d: piece(d).update(stl="../../x.stl"), {"../../x.stl": worker_parts.files["bar.stl"]}
+    ),
+    "a file of another name": lambda worker_parts: changed(
+        worker_parts,
         lambda d: piece(d).update(stl="x.stl"),
-        {"x.stl": made.files["bar.stl"], "bar.step": made.files["bar.step"]},
+        {"x.stl": worker_parts.files["bar.stl"], "bar.step": worker_parts.files["bar.step"]},
     ),
-    "a file too many": lambda made: WorkerParts(made.document, made.files | {"../../x.py": b""}, made.notes),
-    "a file too few": lambda made: WorkerParts(made.document, {"bar.stl": made.files["bar.stl"]}, made.notes),
-    "another hash": lambda made: WorkerParts(made.document, made.files | {"bar.stl": b"solid"}, made.notes),
-    "no notes": lambda made: WorkerParts(made.document, made.files),
-    "notes of numbers": lambda made: WorkerParts(made.document, made.files, NOTES | {"parameters": [1]}),
-    "notes without the author's file": lambda made: WorkerParts(
-        made.document, made.files, NOTES | {"inputs": Inputs().names()}
+    "a file too many": lambda worker_parts: WorkerParts(
+        worker_parts.document, worker_parts.files | {"../../x.py": b""}, worker_parts.notes
     ),
-    "sources of the whole disk": lambda made: WorkerParts(
-        made.document,
-        made.files,
+    "a file too few": lambda worker_parts: WorkerParts(
+        worker_parts.document, {"bar.stl": worker_parts.files["bar.stl"]}, worker_parts.notes
+    ),
+    "another hash": lambda worker_parts: WorkerParts(
+        worker_parts.document, worker_parts.files | {"bar.stl": b"solid"}, worker_parts.notes
+    ),
+    "no notes": lambda worker_parts: WorkerParts(worker_parts.document, worker_parts.files),
+    "notes of numbers": lambda worker_parts: WorkerParts(
+        worker_parts.document, worker_parts.files, NOTES | {"parameters": [1]}
+    ),
+    "notes without the author's file": lambda worker_parts: WorkerParts(
+        worker_parts.document, worker_parts.files, NOTES | {"inputs": Inputs().names()}
+    ),
+    "sources of the whole disk": lambda worker_parts: WorkerParts(
+        worker_parts.document,
+        worker_parts.files,
         NOTES | {"inputs": NOTES["inputs"] | {"sources": ["/"]}},
     ),
 }
 
 
 @pytest.mark.parametrize("kind", FALSE)
-def test_what_does_not_hold_together_is_refused(
-    made: WorkerParts, kind: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+def test_inconsistent_files_are_refused(
+    worker_parts: WorkerParts, kind: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(answer, "_refuse_other_solids", lambda *_: pytest.fail("nothing may be written"))
     with pytest.raises(WrongAnswer, match=r"arm"):
-        answer.read("arm", msgspec.msgpack.encode(FALSE[kind](made)), OWN, PROGRAM)
+        answer.read("arm", msgspec.msgpack.encode(FALSE[kind](worker_parts)), OWN, PROGRAM)
 
 
 def half(stl: bytes) -> bytes:
@@ -446,43 +426,50 @@ def half(stl: bytes) -> bytes:
 
 
 WRONG: dict[str, Callable[[WorkerParts], WorkerParts]] = {
-    "an STL cut in half": lambda made: with_files(made, bar_stl=made.files["bar.stl"][:2000]),
-    "half of the triangles": lambda made: with_files(made, bar_stl=half(made.files["bar.stl"])),
-    "a text as STL": lambda made: with_files(made, bar_stl=b"this is no mesh"),
-    "a coordinate that is no number": lambda made: with_files(
-        made, bar_stl=made.files["bar.stl"][:96] + b"\x00\x00\xc0\x7f" + made.files["bar.stl"][100:]
+    "an STL cut in half": lambda worker_parts: with_files(worker_parts, bar_stl=worker_parts.files["bar.stl"][:2000]),
+    "half of the triangles": lambda worker_parts: with_files(worker_parts, bar_stl=half(worker_parts.files["bar.stl"])),
+    "a text as STL": lambda worker_parts: with_files(worker_parts, bar_stl=b"this is no mesh"),
+    "a coordinate that is no number": lambda worker_parts: with_files(
+        worker_parts,
+        bar_stl=worker_parts.files["bar.stl"][:96] + b"\x00\x00\xc0\x7f" + worker_parts.files["bar.stl"][100:],
     ),
-    "a STEP cut in half": lambda made: with_files(made, bar_step=made.files["bar.step"][:4000]),
-    "a STEP cut in half with an end": lambda made: with_files(
-        made, bar_step=made.files["bar.step"][:4000] + b"\nENDSEC;\nEND-ISO-10303-21;\n"
+    "a STEP cut in half": lambda worker_parts: with_files(worker_parts, bar_step=worker_parts.files["bar.step"][:4000]),
+    "a STEP cut in half with an end": lambda worker_parts: with_files(
+        worker_parts, bar_step=worker_parts.files["bar.step"][:4000] + b"\nENDSEC;\nEND-ISO-10303-21;\n"
     ),
-    "a text as STEP": lambda made: with_files(made, bar_step=b"ISO-10303-21;\nrubbish\nEND-ISO-10303-21;\n"),
-    "another solid": lambda made: with_files(made, bar_step=made.files["bar.step"].replace(b"20.", b"23.")),
-    "another mass": lambda made: changed(made, lambda d: piece(d)["mass"].update(mass=1.0)),
-    "another mass of the body": lambda made: changed(made, lambda d: d["bodies"]["bar"]["mass"].update(mass=1.0)),
-    "another material": lambda made: changed(made, lambda d: piece(d).update(material="cheese")),
-    "other heights": lambda made: changed(made, lambda d: piece(d).update(z_range=[0.0, 1.0])),
-    "another count of triangles": lambda made: changed(made, lambda d: piece(d).update(triangles=3)),
+    "a text as STEP": lambda worker_parts: with_files(
+        worker_parts, bar_step=b"ISO-10303-21;\nrubbish\nEND-ISO-10303-21;\n"
+    ),
+    "another solid": lambda worker_parts: with_files(
+        worker_parts, bar_step=worker_parts.files["bar.step"].replace(b"20.", b"23.")
+    ),
+    "another mass": lambda worker_parts: changed(worker_parts, lambda d: piece(d)["mass"].update(mass=1.0)),
+    "another mass of the body": lambda worker_parts: changed(
+        worker_parts, lambda d: d["bodies"]["bar"]["mass"].update(mass=1.0)
+    ),
+    "another material": lambda worker_parts: changed(worker_parts, lambda d: piece(d).update(material="cheese")),
+    "other heights": lambda worker_parts: changed(worker_parts, lambda d: piece(d).update(z_range=[0.0, 1.0])),
+    "another count of triangles": lambda worker_parts: changed(worker_parts, lambda d: piece(d).update(triangles=3)),
 }
 
 
-def written(made: WorkerParts, folder: Path) -> Path:
-    (folder / "parts.json").write_bytes(made.document)
-    for name, content in made.files.items():
+def written(worker_parts: WorkerParts, folder: Path) -> Path:
+    (folder / "parts.json").write_bytes(worker_parts.document)
+    for name, content in worker_parts.files.items():
         (folder / name).write_bytes(content)
     return folder
 
 
-def test_right_solids_are_taken(made: WorkerParts, tmp_path: Path) -> None:
-    refuse_wrong(written(made, tmp_path))
+def test_right_solids_are_taken(worker_parts: WorkerParts, tmp_path: Path) -> None:
+    refuse_wrong(written(worker_parts, tmp_path))
 
 
 @pytest.mark.parametrize("kind", WRONG)
-def test_solids_that_are_not_as_told_are_refused(made: WorkerParts, kind: str, tmp_path: Path) -> None:
+def test_solids_that_are_not_as_told_are_refused(worker_parts: WorkerParts, kind: str, tmp_path: Path) -> None:
     with pytest.raises(UserError, match="bar"):
-        refuse_wrong(written(WRONG[kind](made), tmp_path))
+        refuse_wrong(written(WRONG[kind](worker_parts), tmp_path))
 
 
-def test_solids_are_read_by_a_process_of_their_own(made: WorkerParts) -> None:
+def test_solids_are_read_by_a_process_of_their_own(worker_parts: WorkerParts) -> None:
     with pytest.raises(WrongAnswer, match=r"the parts of arm: bar: bar: bar.stl is no whole binary STL \(2000 bytes\)"):
-        answer.read("arm", bytes_of(WRONG["an STL cut in half"](made)), OWN, PROGRAM)
+        answer.read("arm", bytes_of(WRONG["an STL cut in half"](worker_parts)), OWN, PROGRAM)

@@ -137,7 +137,7 @@ def test_solids_that_are_gone_leave_no_files(bench: Bench) -> None:
         ),
     ],
 )
-def test_what_is_wrong_is_named(bench: Bench, parts: Any, message: str) -> None:
+def test_wrong_parts_are_named(bench: Bench, parts: Any, message: str) -> None:
     bench.run()
     before = read_parts(Out("four_bar").parts)
     bench.parts, bench.params = parts, replace(bench.params, crank=0.041)
@@ -156,7 +156,7 @@ def test_a_mesh_that_is_off_in_volume_is_refused() -> None:
         check_mesh(mesh, solid.Volume(), 1, "a")
 
 
-def test_what_is_wrong_with_an_automatic_part_is_no_fault_of_its_user() -> None:
+def test_faults_of_automatic_parts_are_no_faults_of_the_user() -> None:
     """Who wrote no CAD gets no advice on cones; edges at which more than two faces meet are counted, too."""
     boxes = cq.Workplane().box(2, 2, 2).union(cq.Workplane().box(2, 2, 2).translate((2, 2, 0)))
     solids = boxes.solids().vals()

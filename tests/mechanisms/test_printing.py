@@ -145,7 +145,7 @@ def test_a_long_piece_is_turned_until_it_fits() -> None:
         (cq.Workplane().box(60, 40, 8).edges("|Y").chamfer(3.5, 19.0), None, None),
     ],
 )
-def test_what_can_be_cut_from_a_sheet(shape: cq.Workplane, thickness: float | None, above: float | None) -> None:
+def test_sheet_pieces_are_recognised(shape: cq.Workplane, thickness: float | None, above: float | None) -> None:
     sheet = sheet_of(down(shape))
     if thickness is None:
         assert sheet is None
@@ -229,12 +229,12 @@ def wall(shape: cq.Workplane) -> float:
     return thinnest(read_triangles(stl_bytes(shape.val())))
 
 
-def test_of_a_plate_it_is_its_thickness() -> None:
+def test_the_thinnest_wall_of_a_plate_is_its_thickness() -> None:
     assert wall(cq.Workplane().box(40, 30, 0.6)) == pytest.approx(0.6, abs=1e-5)
 
 
 @pytest.mark.parametrize("thick", [0.3, 0.8])
-def test_of_a_tube_it_is_that_of_its_wall(thick: float) -> None:
+def test_the_thinnest_wall_of_a_tube_is_its_wall(thick: float) -> None:
     tube = extruded(circle(0, 0, 5.0 + thick), 12.0, holes=[circle(0, 0, 5.0)])
     assert wall(tube) == pytest.approx(thick, abs=0.04)
 

@@ -21,7 +21,7 @@ from shared.contract.consistency import refuse_inconsistent_motion
 
 
 SIZE, PROVEN = 0.2, 0.2
-"""Of the truss (m), and what the proof may doubt of its bars (mm)."""
+"""Size of the truss (m), and doubt that the proof may have of its bars (mm)."""
 
 
 def _truss() -> Mechanism:
@@ -58,7 +58,7 @@ def test_a_truss_that_snaps_through_has_rows_for_the_proof() -> None:
     assert np.median(even[fast]) < 0.3 * even.max()
 
 
-def test_of_too_many_steps_the_worst_are_divided(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_worst_of_too_many_steps_are_divided(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(solving, "MOST_ROWS", 400)
     m = _truss()
     solution = solving.motion_of("truss", SimpleNamespace(DURATION=0.5), m, None)
@@ -227,7 +227,7 @@ def test_other_times_and_a_plain_run_know_nothing_of_these_rows() -> None:
     np.testing.assert_array_equal(solution.q[at], plain.q)
 
 
-def test_what_jumps_at_the_same_time_has_two_rows_together() -> None:
+def test_simultaneous_jumps_have_two_rows_together() -> None:
     """The end of an acceleration is found in the values of a law, within rounding."""
     m = _crank(RAMP)
     m.torque("load", m.bodies["crank"], _step(-1.0, -3.0))

@@ -98,7 +98,7 @@ def _called(name: str) -> Mechanism:
         ),
     ],
 )
-def test_what_is_no_model_or_solution_is_told(
+def test_files_without_a_model_or_a_solution_are_reported(
     monkeypatch: pytest.MonkeyPatch, build: Any, motion: Any, words: str
 ) -> None:
     _Author(monkeypatch, build, motion)
@@ -165,7 +165,7 @@ def test_a_mass_of_mechanism_py_wins_over_that_of_the_parts() -> None:
 
 
 MASS, INERTIA = 0.3, 2e-4
-"""Those of bodies whose parts would have them (kg, kg m^2)."""
+"""Mass and inertia of bodies whose parts would have them (kg, kg m^2)."""
 COUNT = 2
 """So many numbers of each mechanism change."""
 
@@ -194,11 +194,11 @@ def numbers(m: Mechanism) -> Iterator[tuple[str, str]]:
 
 
 def changed(number: Number, m: Mechanism) -> None:
-    number.put(m, 1.003 * number.value if number.value else 1e-3)
+    number.assign(m, 1.003 * number.value if number.value else 1e-3)
 
 
 def solved(m: Mechanism) -> dict[str, list[np.ndarray] | str]:
-    """What each way of solving gives, or why it does not."""
+    """Return the result of each way of solving, or the reason why it fails."""
     body = list(m.bodies)[1]
     every = {body: {"mass": [MASS, 1.1 * MASS]}}
     measures = {"last": final(f"{body}.x"), "far": largest(f"{body}.theta")}

@@ -116,7 +116,7 @@ def test_a_single_file_in_a_folder_of_ones_own(tmp_path: Path) -> None:
     assert "far: 0.24" in longer.stdout, longer.stderr
 
 
-def test_what_the_file_raises_is_said_by_line_and_nothing_is_written(tmp_path: Path) -> None:
+def test_errors_of_the_file_are_reported_by_line_and_nothing_is_written(tmp_path: Path) -> None:
     (tmp_path / "press.py").write_text(HEAD + ASKED.replace("1e-5)", "1 / 0)"))
     done = mbsd("tolerances", "press", at=tmp_path)
     assert done.returncode == 1
@@ -191,9 +191,7 @@ def test_the_duration_of_mechanism_py_holds_where_nothing_else_is_said(monkeypat
         wished_results("slider_crank", m, Params())
 
 
-def test_what_takes_long_says_how_far_it_is(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_long_runs_report_their_progress(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr(author, "tolerances", lambda p: {"far": GOOD | {"way": "sweep", "steps": 4, "n": 130}})
     monkeypatch.setattr("shared.stage.console.SHORTEST", 0.0)
     m = build(Params())

@@ -18,7 +18,7 @@ from shared.contract.skeleton import read_skeleton
 from shared.stage import paths
 from shared.stage.errors import UserError
 from shared.stage.paths import Out, known_name, mechanism_name, variants_in
-from tests.mechanisms.author_project import Project, put
+from tests.mechanisms.author_project import Project, write_file
 
 MECHANISM = """
 from dataclasses import dataclass
@@ -48,7 +48,7 @@ def build(p):
 @pytest.fixture
 def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, out_root: Path) -> Project:
     made = Project(tmp_path / "project", monkeypatch, solve_stage)
-    put("mechanisms/arm/mechanism.py", MECHANISM)(made)
+    write_file("mechanisms/arm/mechanism.py", MECHANISM)(made)
     return made
 
 
@@ -69,10 +69,10 @@ def test_an_unknown_variant_is_told_with_those_there_are(project: Project) -> No
 
 
 def test_a_name_that_may_be_two_variants_is_refused(project: Project) -> None:
-    put("mechanisms/arm_no/mechanism.py", 'VARIANTS = {"gravity": {}}\n')(project)
+    write_file("mechanisms/arm_no/mechanism.py", 'VARIANTS = {"gravity": {}}\n')(project)
     with pytest.raises(UserError, match=r"may be arm-no_gravity or arm_no-gravity; give one of these variants"):
         mechanism_name("arm-no-gravity")
-    put("mechanisms/arm_no_gravity/mechanism.py", "")(project)
+    write_file("mechanisms/arm_no_gravity/mechanism.py", "")(project)
     assert mechanism_name("arm-no-gravity") == "arm_no_gravity"  # a folder's name comes first
 
 
@@ -118,13 +118,13 @@ REFUSED: dict[str, tuple[Any, str]] = {
 
 
 @pytest.mark.parametrize(("given", "words"), REFUSED.values(), ids=REFUSED)
-def test_what_is_no_variant_is_refused(project: Project, given: Any, words: str) -> None:
+def test_invalid_variants_are_refused(project: Project, given: Any, words: str) -> None:
     with pytest.raises(UserError, match=words):
         checked_variants("arm", SimpleNamespace(VARIANTS=given, Params=_Params))
 
 
 def test_a_misspelt_field_is_told_before_the_mechanism_itself_is_solved(project: Project) -> None:
-    put("mechanisms/arm/mechanism.py", MECHANISM.replace('"gravity": 0.0', '"gravty": 0.0'))(project)
+    write_file("mechanisms/arm/mechanism.py", MECHANISM.replace('"gravity": 0.0', '"gravty": 0.0'))(project)
     with pytest.raises(UserError, match="did you mean 'gravity'"):
         project.run()
 

@@ -139,7 +139,7 @@ def _given(function: Callable, arguments: dict[str, Any]) -> Any:
 
 
 def _takes(parameter: inspect.Parameter, bad: str) -> bool:
-    """Whether the signature allows what is bad elsewhere."""
+    """Return True if the signature allows what is bad elsewhere."""
     words = str(parameter.annotation)
     return (bad in ("text", "empty text") and "str" in words) or (bad == "lambda" and "Callable" in words)
 
@@ -239,11 +239,11 @@ PLAIN = (
     "actuator",
     "gas",
 )
-"""What can be simulated without compiling equations of its own."""
+"""Methods that can be simulated without compiling equations of their own."""
 
 
 def _accepted() -> list[tuple[str, str, str]]:
-    """What the methods took of what is odd: method, argument, value."""
+    """Return odd arguments that methods accepted: method, argument, value."""
     out = []
     for method in sorted(_methods()):
         for parameter, bad in itertools.product(_call(method)[1], ODD):
@@ -257,7 +257,7 @@ def _accepted() -> list[tuple[str, str, str]]:
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_what_is_odd_but_accepted_can_be_solved_or_is_refused_then() -> None:
+def test_odd_but_accepted_arguments_can_be_solved_or_are_refused_then() -> None:
     taken = _accepted()
     assert len(taken) > 200
     for k in np.random.default_rng(7).choice(len(taken), 25, replace=False):

@@ -75,7 +75,7 @@ MAY: dict[str, tuple[str, ...]] = {
 
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("call", CALLS)
-def test_what_is_asked_of_a_model_or_a_solution_takes_nothing_that_it_is_not(
+def test_requests_of_models_and_solutions_take_no_wrong_types(
     call: str, tmp_path: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -147,6 +147,6 @@ def test_misspelt_names_come_with_what_was_meant() -> None:
         (lambda s: s["driven"].sweep(1e17), "turns to 1 × 10¹⁷ rad"),
     ],
 )
-def test_what_is_beyond_all_measure_ends_in_a_sentence(solve: Callable, says: str) -> None:
+def test_extreme_numbers_end_in_a_sentence(solve: Callable, says: str) -> None:
     with pytest.raises(MechanismError, match=says):
         solve(_swing())

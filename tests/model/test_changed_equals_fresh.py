@@ -91,7 +91,7 @@ OTHERS: dict[str, list[Any]] = {
 
 @pytest.fixture(autouse=True)
 def _curves_looked_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What refuses a curve takes a quarter of a second, and the same few curves are built hundreds of times."""
+    """Check each curve once: that takes a quarter of a second, and curves are built hundreds of times."""
     for name in ("check_crossing", "check_curvature"):
         monkeypatch.setattr(plane_curves, name, _once(getattr(plane_curves, name)))
 
@@ -232,33 +232,19 @@ def test_every_argument_alone_and_in_pairs(kind: Any) -> None:
     assert accepted | in_groups >= set(own), f"never changed: {set(own) - accepted}"
 
 
-@pytest.mark.parametrize("model", ["hunt_crossley", "flores"])
-def test_a_contact_takes_a_restitution_in_place_of_its_damping(model: str) -> None:
-    [kind] = [kind for kind in KINDS if kind.name == "contact"]
-    values = {"damping": 0.0, "restitution": 0.6, "damping_model": model}
-    there = example(kind)
-    assert isinstance(there, Mechanism)
-    here, fresh = changed(there, values), example(kind, values)
-    assert isinstance(here, Mechanism), here
-    assert isinstance(fresh, Mechanism), fresh
-    assert state(here) == state(fresh)
+INSTEAD: list[tuple[str, dict[str, Any]]] = [
+    ("contact", {"damping": 0.0, "restitution": 0.6, "damping_model": "hunt_crossley"}),
+    ("contact", {"damping": 0.0, "restitution": 0.6, "damping_model": "flores"}),
+    ("clearance_joint", {"stiffness": None, "modulus": 2e9, "journal_modulus": 1e9, "radius": 0.2}),
+    ("clearance_joint", {"stiffness": None, "modulus": 2e9, "journal_modulus": 1e9, "radius": 0.3}),
+    ("hydraulic_cylinder", {"rated_flow": None, "orifice": 1e-4}),
+]
+"""Arguments that are given in place of another one."""
 
 
-@pytest.mark.parametrize("radius", [0.2, 0.3])
-def test_a_clearance_joint_takes_moduli_in_place_of_its_stiffness(radius: float) -> None:
-    [kind] = [kind for kind in KINDS if kind.name == "clearance_joint"]
-    values = {"stiffness": None, "modulus": 2e9, "journal_modulus": 1e9, "radius": radius}
-    there = example(kind)
-    assert isinstance(there, Mechanism)
-    here, fresh = changed(there, values), example(kind, values)
-    assert isinstance(here, Mechanism), here
-    assert isinstance(fresh, Mechanism), fresh
-    assert state(here) == state(fresh)
-
-
-def test_a_hydraulic_cylinder_takes_an_orifice_in_place_of_its_rated_flow() -> None:
-    [kind] = [kind for kind in KINDS if kind.name == "hydraulic_cylinder"]
-    values = {"rated_flow": None, "orifice": 1e-4}
+@pytest.mark.parametrize(("name", "values"), INSTEAD)
+def test_one_argument_takes_the_place_of_another(name: str, values: dict[str, Any]) -> None:
+    [kind] = [kind for kind in KINDS if kind.name == name]
     there = example(kind)
     assert isinstance(there, Mechanism)
     here, fresh = changed(there, values), example(kind, values)

@@ -104,6 +104,6 @@ def test_a_change_after_it_is_given_keeps_it() -> None:
         (lambda m: m.change(m, mass=1.0), "no body, joint, driver, force or contact"),
     ],
 )
-def test_what_is_none_is_refused(add: Callable[[Any], object], says: str) -> None:
+def test_wrong_values_are_refused(add: Callable[[Any], object], says: str) -> None:
     with pytest.raises(ModelError, match=says):
         add(linkage())

@@ -1,4 +1,4 @@
-"""What a solution keeps for the next one depends on all that it was found from."""
+"""Results kept for the next solution depend on all inputs of the first."""
 
 from __future__ import annotations
 
@@ -10,18 +10,12 @@ import pytest
 
 from mbsd import AssemblyError, Mechanism, constant_rate
 from mbsd.base.running import MOST, Kept
+from tools.models import linkages
 
 
 def four_bar(crank: float = 0.04, start: float = 0.0, side: float = 100.0) -> Mechanism:
-    m = Mechanism("four_bar")
-    a, b, c = m.bar("crank", crank, 0.1), m.bar("coupler", 0.12, 0.2), m.bar("rocker", 0.08, 0.15)
-    m.revolute("A", m.ground.at(0, 0), a.start)
-    m.revolute("B", a.end, b.start)
-    m.revolute("C", b.end, c.end)
-    m.revolute("D", m.ground.at(0.1, 0), c.start)
-    m.drive_angle("motor", a, constant_rate(6.0, start))
-    m.start_near(crank=0, coupler=math.copysign(45, side), rocker=side)
-    return m
+    law, near = constant_rate(6.0, start), (math.copysign(45, side), side)
+    return linkages.four_bar(0.1, crank, 0.12, 0.08, near, masses=(0.1, 0.2, 0.15), law=law)
 
 
 def poses(m: Mechanism) -> list[np.ndarray]:
@@ -70,7 +64,7 @@ def test_a_result_that_is_written_into_spoils_no_other() -> None:
     assert np.array_equal(m.sweep(steps=12).q, first)
 
 
-def test_what_does_not_close_is_not_tried_again_and_named_by_its_own_words(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_open_loop_is_not_tried_again_and_named_by_its_own_words(monkeypatch: pytest.MonkeyPatch) -> None:
     import mbsd.kinematics.pose.close as pose
 
     said = []

@@ -10,21 +10,15 @@ import pytest
 
 from mbsd import Mechanism, ModelError, constant_rate, fit_path, optimise, tolerances
 from mbsd.measures import largest, samples
+from tools.models import linkages
 
 POINTS = [(0.05, 0.05), (0.04, 0.06), (0.03, 0.07)]
 
 
 def four_bar() -> Mechanism:
-    m = Mechanism("four_bar")
-    crank, coupler, rocker = m.bar("crank", 0.04, mass=0.1), m.bar("coupler", 0.12), m.bar("rocker", 0.09)
-    m.revolute("A", m.ground.at(0, 0), crank.start)
-    m.revolute("B", crank.end, coupler.start)
-    m.revolute("C", coupler.end, rocker.end)
-    m.revolute("D", m.ground.at(0.12, 0), rocker.start)
-    m.drive_angle("motor", crank, constant_rate(6.0))
-    m.trace("P", coupler.at(0.06, 0.03))
-    m.start_near(crank=0, coupler=45, rocker=100)
-    return m
+    return linkages.four_bar(
+        0.12, 0.04, 0.12, 0.09, masses=(0.1, None, None), law=constant_rate(6.0), traced=(0.06, 0.03)
+    )
 
 
 def door() -> Mechanism:
@@ -62,13 +56,13 @@ def own_fault(*given: Any) -> None:
 
 
 @pytest.mark.parametrize("call", CALLS.values(), ids=CALLS)
-def test_what_it_raises_reaches_the_user_as_it_is(call: Callable[[Any, Path], object], tmp_path: Path) -> None:
+def test_its_exceptions_reach_the_user_as_they_are(call: Callable[[Any, Path], object], tmp_path: Path) -> None:
     with pytest.raises(ZeroDivisionError, match="of the user"):
         call(own_fault, tmp_path)
 
 
 @pytest.mark.parametrize("call", CALLS.values(), ids=CALLS)
-def test_what_cannot_be_called_is_refused_before_anything_runs(
+def test_objects_that_cannot_be_called_are_refused_before_anything_runs(
     call: Callable[[Any, Path], object], tmp_path: Path
 ) -> None:
     with pytest.raises(ModelError, match=r"is 3; it must be a function of"):

@@ -1,4 +1,4 @@
-"""What change(), files and the schema know of an argument comes from its type, however that is written."""
+"""Roles of arguments in change(), files and the schema come from their types, however written."""
 
 from typing import Optional
 

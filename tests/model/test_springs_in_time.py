@@ -109,7 +109,7 @@ def test_laws_are_changed_saved_and_used_in_statics(tmp_path: Path) -> None:
     m.draw().save(tmp_path / "block.svg")
 
 
-def test_what_cannot_be_is_refused() -> None:
+def test_invalid_requests_are_refused() -> None:
     with pytest.raises(ModelError, match="block: force 'spring': stiffness and free_length are both laws of time"):
         block(stiffness=lambda t: 1.0 + t, free_length=lambda t: 1.0 - t)
     with pytest.raises(ModelError, match="force 'spring': damping is -1; it cannot be negative"):

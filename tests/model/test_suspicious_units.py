@@ -16,21 +16,14 @@ from mbsd import Mechanism, ModelWarning, constant_rate, cycloidal, harmonic
 from mbsd.analyses.findings import Finding
 from mbsd.saving.document import build, document
 from shared.stage.paths import mechanism_names
+from tools.models.linkages import four_bar
 from tools.random_mechanisms import linkages
 
 
 def _four_bar(scale: float = 1.0, **lengths: float) -> Mechanism:
     """The crank-rocker of 120, 40, 120, 90 mm with rods of 0.5 kg/m; single lengths may be changed."""
     sizes = {"ground": 0.12, "crank": 0.04, "coupler": 0.12, "rocker": 0.09} | lengths
-    sizes = {name: scale * value for name, value in sizes.items()}
-    m = Mechanism("four_bar")
-    crank, coupler, rocker = (m.bar(n, sizes[n], 0.05) for n in ("crank", "coupler", "rocker"))
-    m.revolute("A", m.ground.at(0, 0), crank.start)
-    m.revolute("B", crank.end, coupler.start)
-    m.revolute("C", coupler.end, rocker.end)
-    m.revolute("D", m.ground.at(sizes["ground"], 0), rocker.start)
-    m.start_near(crank=0, coupler=45, rocker=100)
-    return m
+    return four_bar(*(scale * size for size in sizes.values()), masses=(0.05, 0.05, 0.05), law=None)
 
 
 def _of_units(m: Mechanism) -> list[Finding]:

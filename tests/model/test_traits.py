@@ -1,4 +1,4 @@
-"""What kinds say of themselves, so that no code compares their names; and kinds of one's own that say the same."""
+"""Traits of kinds, so that no code compares their names; and a user's kinds with the same traits."""
 
 from __future__ import annotations
 

@@ -73,7 +73,7 @@ def _late(t, q, v):
 
 
 @pytest.mark.parametrize("wrap", [lambda f: f, numba.njit], ids=["python", "njit"])
-def test_what_it_raises_is_told_with_force_and_time(wrap) -> None:
+def test_its_exceptions_are_reported_with_force_and_time(wrap) -> None:
     m = Mechanism("pair")
     m.user_force("push", wrap(_late), m.body("a", 1.0, inertia=1.0))
     with pytest.raises(ModelError, match=r"pair: force 'push': at t = 0\.1.*ValueError: too late"):
@@ -166,7 +166,7 @@ def test_an_equilibrium_a_linearisation_and_a_sweep_know_a_law() -> None:
 
 
 @pytest.mark.parametrize("wrap", [lambda f: f, numba.njit], ids=["python", "njit"])
-def test_what_a_law_does_wrong_is_told_with_its_spring_and_time(wrap, tmp_path) -> None:
+def test_errors_of_a_law_are_reported_with_its_spring_and_time(wrap, tmp_path) -> None:
     def pair(law) -> Mechanism:
         m = Mechanism("pair", gravity=None)
         m.spring_law("tie", m.ground.at(-1.0, 0), m.body("a", 1.0, inertia=1.0).origin, law)

@@ -31,7 +31,7 @@ def test_a_film_in_scratch_and_a_plain_script(out_root: Path, tmp_path: Path, mo
     assert (film.root / "plain" / "0000.png").is_file()
 
 
-def test_what_there_is_nothing_to_measure_of(out_root: Path, tmp_path: Path) -> None:
+def test_mechanisms_without_a_film_are_not_measured(out_root: Path, tmp_path: Path) -> None:
     with pytest.raises(UserError, match="four_bar has no motion, parts or shot yet; make poster-four-bar"):
         Film("four_bar", TINY, 6, tmp_path)
     with pytest.raises(UserError, match="no mechanism has its film at tiny"):

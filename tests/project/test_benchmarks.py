@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from benchmarks import derivatives, machines, rows, synthesis, table
-from benchmarks.dynamics import CODES, chain, n_four_bar, pins, squeezer
+from benchmarks.dynamics import CODES, pins
 from benchmarks.dynamics.cases import BESIDE_PEERS, case
-from benchmarks.dynamics.equations import Chain, Equations
 from benchmarks.dynamics.settings import load
 from benchmarks.machines import mbsd_code
 from benchmarks.rows import Bar, Row
@@ -40,77 +39,6 @@ def test_rows_are_written_whatever_their_numbers_are(tmp_path: Path, monkeypatch
     bars = [Bar("gradient, simulations", 4.0, np.float64(3.2), "", "", np.float64(3.2) <= 4.0, most=True)]
     rows.write(every, bars)
     assert rows.read() == (every, bars)
-
-
-def test_the_error_of_a_call_sees_what_is_wrong() -> None:
-    from benchmarks.calls import energy_drift, rocker_error
-    from benchmarks.four_bar import ANGLES, exact
-
-    assert rocker_error(ANGLES, exact(ANGLES)[1]) == 0.0
-    assert rocker_error(ANGLES, exact(ANGLES)[1] + 1e-3) == pytest.approx(1e-3)
-    angle = np.linspace(0.0, -np.pi, 50)
-    speed = np.sqrt(3.0 * 9.81 * -np.sin(angle).clip(max=0.0))  # inertia l^2 / 3 of a rod of 1 m
-    assert energy_drift(angle, speed) < 1e-12
-    assert energy_drift(angle, 1.01 * speed) > 0.05
-
-
-@pytest.mark.parametrize("name", BESIDE_PEERS)
-def test_the_start_is_consistent(name: str) -> None:
-    model = case(name).model
-    assert pins.closure(model) < 1e-14
-    if not all(solid.inertia for solid in model.solids):
-        assert not model.start[1].any()  # the pendulum, at rest, which nobody solves in these coordinates
-        return
-    written = Equations(model)
-    q, v = (part.ravel() for part in model.start)
-    arms = written.arms(q)
-    assert np.abs(written.residual(q, arms)).max() < 1e-14
-    assert np.abs(written.jacobian(arms) @ v).max() < 1e-14
-
-
-def test_the_squeezer_starts_with_the_published_accelerations() -> None:
-    model = squeezer.model()
-    q, v = (part.ravel() for part in model.start)
-    accelerations = Equations(model).acceleration(q, v)[2::3]
-    # beta'' and Theta'' at rest, of the Test Set for IVP Solvers.
-    assert accelerations[0] == pytest.approx(14222.4439199541138705911625887, rel=1e-9)
-    assert accelerations[1] - accelerations[0] == pytest.approx(-10666.8329399655854029433719415, rel=1e-9)
-
-
-def test_the_four_bars_turn_as_published() -> None:
-    """Place of the first rod's top at 10 s for N = 2: IFToMM's library, Exudyn's converged values."""
-    angle = n_four_bar.exact_angle(2)
-    assert (np.cos(angle), np.sin(angle)) == pytest.approx((0.3284581, 0.9445185), abs=1e-6)
-
-
-def test_the_band_form_says_the_same_as_the_dense() -> None:
-    model = case("A02 N=10").model
-    dense, band = Equations(model), Chain(model)
-    y = np.concatenate([part.ravel() for part in model.start])
-    y = y + 0.01 * np.random.default_rng(3).normal(size=y.shape)
-    assert band.projected_rates(0.0, y) == pytest.approx(dense.projected_rates(0.0, y), abs=1e-9)
-    assert band.rates(0.0, y) == pytest.approx(dense.rates(0.0, y), abs=1e-9)
-    assert band.project(y) == pytest.approx(dense.project(y), abs=1e-11)
-
-
-@pytest.mark.parametrize("index", [1, 2])
-def test_the_matrix_written_for_ida_is_the_derivative(index: int) -> None:
-    from benchmarks.dynamics.dae import Dae
-
-    dae = Dae(squeezer.model(), index, feedback=7.0)
-    y, slope = dae.start()
-    rng = np.random.default_rng(1)
-    y, slope = (part + 0.01 * rng.normal(size=part.shape) for part in (y, slope))
-    y[2 * dae.n + dae.m :] = 0.0
-    rate, step = 3.0, 1e-6
-    written, ahead, behind = np.zeros((dae.length, dae.length)), np.zeros(dae.length), np.zeros(dae.length)
-    dae.fill_dense(0.0, y, slope, None, rate, written)
-    for k in range(dae.length):
-        moved = np.zeros(dae.length)
-        moved[k] = step
-        dae.residual(0.0, y + moved, slope + rate * moved, ahead)
-        dae.residual(0.0, y - moved, slope - rate * moved, behind)
-        assert written[:, k] == pytest.approx((ahead - behind) / (2 * step), abs=1e-8 * np.abs(written).max())
 
 
 def test_settings_are_of_known_codes_and_ours_are_complete() -> None:
@@ -159,35 +87,11 @@ def test_the_table_says_what_was_missed() -> None:
     assert "| A03 | peer | 2 | 2 ms | 2 | angle (rad) 1.0e+00; **beyond the limits** | step 1 |" in every
 
 
-@pytest.mark.parametrize("links", [1, 5])
-def test_the_chains_equations_are_those_of_its_bars(links: int) -> None:
-    """The written equations against the chain solved in reference coordinates."""
-    from mbsd import Mechanism
-
-    m = Mechanism("chain", gravity=(0.0, -chain.GRAVITY))
-    above = m.ground.origin
-    for k in range(links):
-        link = m.bar(f"link{k}", chain.LENGTH, chain.MASS)
-        m.revolute(f"pin{k}", above, link.start)
-        m.start_near(**{link.name: np.degrees(chain.SLANT)})
-        above = link.end
-    sol = m.simulate(0.3, steps=2, tolerance=1e-10)
-    wanted = chain.angles(links, 0.3)
-    assert [sol.body(f"link{k}").theta[-1] for k in range(links)] == pytest.approx(wanted, abs=1e-7)
-
-
 @pytest.mark.parametrize("problem", machines.PROBLEMS)
 def test_our_machines_are_exact(problem: str) -> None:
     """Every machine within its limit, the sweeps to rounding."""
     fresh, error = mbsd_code.prepare(problem)
     assert error(fresh()()) < (machines.LIMITS[problem] if problem == machines.CONTACT else 1e-12)
-
-
-def test_the_ball_comes_back() -> None:
-    """Between bounces it is as high as it was let go from, less nothing."""
-    tops = [machines.height(t) for t in np.linspace(0.8, 1.0, 20_001)]
-    assert max(tops) == pytest.approx(machines.HEIGHT, abs=1e-6)
-    assert machines.height(0.0) == machines.HEIGHT
 
 
 def test_our_synthesis_passes_through_its_points() -> None:

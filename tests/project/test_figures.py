@@ -92,7 +92,7 @@ def test_a_film_on_dark_paper_moves_as_the_other_one_and_is_small() -> None:
     assert dim.max() > 220, "words are read"
 
 
-def test_what_is_no_film_is_refused() -> None:
+def test_files_that_are_no_film_are_refused() -> None:
     with pytest.raises(ValueError, match="no GIF"):
         dark_gif(b"no picture")
 

@@ -26,9 +26,9 @@ OPTIONAL = {
     "rich": "study",
     "distributed": "cluster",
 }
-"""What single methods ask for, and the extra that brings it."""
+"""Extras that single methods need."""
 PACKAGE = {"imageio_ffmpeg": "imageio-ffmpeg", "PIL": "pillow"}
-"""Of what is imported under another name."""
+"""Packages that are imported under another name."""
 
 
 def test_the_solver_imports_its_three_packages_and_its_extras_alone() -> None:
@@ -62,7 +62,7 @@ def test_another_numba_is_refused_with_the_remedy(version: str, monkeypatch: pyt
 
 
 @pytest.mark.parametrize("version", ["0.61.0", "0.61.2", "0.68.1", "0.68.0rc1"])
-def test_those_that_were_tried_are_taken(version: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_tested_versions_are_accepted(version: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(numba, "__version__", version)
     refuse_other_versions()
 

@@ -54,7 +54,7 @@ def test_an_unknown_preset_or_aspect_is_refused_with_the_known_ones(words: str, 
         (("new",), r"(?s)make new NAME=my_linkage.*four_bar|four_bar.*make new NAME=my_linkage"),
     ],
 )
-def test_what_cannot_be_is_an_error_with_a_remedy_before_anything_runs(words: tuple[str, ...], error: str) -> None:
+def test_invalid_options_are_an_error_with_a_remedy_before_anything_runs(words: tuple[str, ...], error: str) -> None:
     done = run("make", "-o", "install", "-o", "libraries", *words)
     assert done.returncode != 0
     assert re.search(error, done.stderr)
@@ -95,7 +95,7 @@ def test_tests_and_measurements_wait_for_all_kernels() -> None:
         )
 
 
-def test_what_makes_parts_or_pictures_ends_before_it_begins_where_libraries_are_missing(tmp_path: Path) -> None:
+def test_missing_libraries_end_parts_and_pictures_before_they_begin(tmp_path: Path) -> None:
     """install leaves a file where all were found; what needs none of them goes on."""
     shutil.copy(ROOT / "Makefile", tmp_path)
     (tmp_path / ".venv").mkdir()

@@ -23,7 +23,7 @@ class Finder:
         return PathFinder.find_spec(name, [{root!r}]) if name == "mbsd" else None
 sys.meta_path.append(Finder)
 """
-"""What an editable installation of setuptools does: it knows the folder by its absolute path."""
+"""An editable installation of setuptools: it knows the folder by its absolute path."""
 
 
 class Clone:

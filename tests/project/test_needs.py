@@ -60,7 +60,7 @@ def tried(
     )
 
 
-def test_what_wants_a_missing_program_is_skipped_and_told_first_and_last(tmp_path: Path) -> None:
+def test_tests_of_missing_programs_are_skipped_and_named_first_and_last(tmp_path: Path) -> None:
     """Also by two processes, and in CI where that is asked for."""
     (tmp_path / "test_some.py").write_text(TESTS)
     done = tried(tmp_path, "-n", "2", "--dist", "loadscope", CI="true", STRICT="0")

@@ -108,7 +108,7 @@ def test_the_citation_of_this_clone_is_complete() -> None:
         ("title: t", "title: t\ndate-released: soon", "date-released is 'soon'; YYYY-MM-DD"),
     ],
 )
-def test_what_the_citation_lacks_is_named(old: str, new: str, wrong: str) -> None:
+def test_missing_lines_of_the_citation_are_named(old: str, new: str, wrong: str) -> None:
     assert any(fault.startswith(wrong) for fault in faults_of_citation(CITATION.replace(old, new)))
 
 
@@ -119,7 +119,7 @@ def test_a_wheel_of_our_files_with_both_licences_passes() -> None:
     assert faults_of_licences([*LICENCES, "mbsd/__init__.py", "mbsd/rooms/render/view/bundle.py"], ROOT) == []
 
 
-def test_what_a_wheel_lacks_or_brings_of_others_is_named(tmp_path: Path) -> None:
+def test_missing_and_foreign_files_of_a_wheel_are_named(tmp_path: Path) -> None:
     lock = tmp_path / "render" / "view" / "page" / "package-lock.json"
     lock.parent.mkdir(parents=True)
     entries = {"": {}, "node_modules/a": {"version": "1", "license": "ISC"}, "node_modules/b": {"dev": True}}

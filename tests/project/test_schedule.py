@@ -61,7 +61,7 @@ def test_the_recorded_groups_exist_and_are_long() -> None:
 
 
 @pytest.mark.parametrize("test", SAMPLES)
-def test_what_make_test_samples_exists(test: str) -> None:
+def test_tests_sampled_by_make_test_exist(test: str) -> None:
     file, _, name = test.partition("::")
     assert re.search(rf"^def {name}\b", (ROOT / file).read_text(), re.M), (
         f"{test} is gone; mend tests/running/samples.py"

@@ -47,7 +47,7 @@ def test_published_schemas_are_current(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", schema.PUBLISHED)
-def test_what_is_written_fits_the_schema(name: str) -> None:
+def test_written_files_fit_the_schema(name: str) -> None:
     jsonschema.Draft202012Validator.check_schema(published(name))
     jsonschema.validate(json.loads(jsonfile.encode(DOCUMENTS[name])), published(name))
 

@@ -15,7 +15,6 @@ from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
 from tests.running.needs import needed
 from tools.site import __main__ as program
-from tools.site.build import navigation
 from tools.site.checks import faults
 from tools.site.reference import ROOMS, contents, entry, members, signature, text
 from tools.site.staging import for_both_themes, linked_page, page_of_notebook, page_of_source
@@ -35,17 +34,6 @@ def clone(folder: Path, text: str) -> Path:
 def linked(folder: Path, text: str) -> tuple[str, set[Path]]:
     page = Path("docs/page.md")
     return linked_page(text, page, clone(folder, text), [page])
-
-
-def test_links_to_sources_lead_to_their_pages_and_code_stays_as_it_is(tmp_path: Path) -> None:
-    written = "[a](../mechanisms/crank/mechanism.py#x) [b](schema) ![c](crank.svg) [d](page.md#e) `[f](g.py)`\n"
-    code = "```python\ntable[0](missing.py)\n```\n"
-    page, sources = linked(tmp_path, written + code)
-    assert page == (
-        "[a](../mechanisms/crank/mechanism.py.md#x) [b](schema/README.md) ![c](crank.svg) [d](page.md#e) `[f](g.py)`\n"
-        + code
-    )
-    assert sources == {Path("mechanisms/crank/mechanism.py"), Path("docs/schema")}
 
 
 @pytest.mark.parametrize("link", ["missing.md", "../../outside.md"])
@@ -73,16 +61,6 @@ def test_a_pair_of_pictures_is_chosen_by_the_theme_and_another_picture_stays() -
     assert '<img class="on-light" loading="lazy" alt="A" src="a.svg">' in shown
     assert '<img class="on-dark" loading="lazy" alt="A" src="a_dark.svg">' in shown
     assert shown.endswith(still)
-
-
-def test_pages_in_no_group_are_listed_all_the_same(tmp_path: Path) -> None:
-    (tmp_path / "docs" / "decisions").mkdir(parents=True)
-    (tmp_path / "docs" / "decisions" / "README.md").write_text("## Parts\n\n- [Pins](parts/pins.md)\n")
-    for name in ("old", "new"):
-        (tmp_path / "docs" / f"{name}.md").touch()
-    groups = navigation([{"Old": "docs/old.md"}, {"Why": ["{decisions}"]}], tmp_path)
-    assert groups[1] == {"Why": [{"Parts": [{"Pins": "docs/decisions/parts/pins.md"}]}]}
-    assert groups[2] == {"More": ["docs/new.md"]}
 
 
 def test_a_notebook_is_its_text_code_and_outputs(tmp_path: Path) -> None:

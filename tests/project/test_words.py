@@ -20,15 +20,17 @@ LONG = 100
 """Letters that the first line of a docstring may have."""
 AIM = 3.0, 3.0
 CEILINGS = {
-    "mbsd": (3.0, 12.4, 40),
-    "mechanisms": (3.0, 25.0, 1),
-    "render": (3.0, 26.4, 0),
+    "mbsd": (3.0, 8.0, 27),
+    "mechanisms": (3.0, 3.0, 1),
+    "render": (3.0, 6.6, 0),
     "shared": (3.0, 3.0, 0),
     "studio": (3.0, 3.0, 0),
     "tools": (3.0, 14.1, 0),
     "benchmarks": (3.0, 20.3, 0),
 }
 """By room: per cent of docstrings that begin oddly, per cent with a long first line, BANNED names that are left."""
+HEADLESS = {"mbsd": 4}
+"""Strings below constants and fields that begin oddly and are left."""
 BANNED = {"made", "done", "beside", "through", "asked", "bare", "of", "at", "put", "take"}
 """No function, class or file is called so."""
 NAMELESS = {"one", "found"}
@@ -101,8 +103,8 @@ def words_of(room: str) -> Words:
 @pytest.mark.parametrize("room", CEILINGS)
 def test_docstrings_begin_with_a_verb_or_a_noun_in_a_short_line(room: str) -> None:
     words = words_of(room)
-    headless = [f"{place} {text[:80]}" for place, text in words.strings if text.startswith("Of ")]
-    assert not headless, "say what it is of f: its size, its place, its name:\n" + "\n".join(headless)
+    headless = [f"{place} {text[:80]}" for place, text in words.strings if ODD.match(text)]
+    assert len(headless) <= HEADLESS.get(room, 0), "begin with a noun:\n" + "\n".join(headless)
     first = [(place, text.partition("\n")[0]) for place, text in words.docstrings]
     odd = [f"{place} {line}" for place, line in first if ODD.match(line)]
     long = [f"{place} {line}" for place, line in first if len(line) > LONG]

@@ -35,7 +35,7 @@ def filled(film: Film) -> float:
 
 
 def boxes(film: Film) -> list[Box]:
-    """Of each line and of the legend, as parts of the picture's width and height."""
+    """Return the box of each line and of the legend, as parts of the picture's width and height."""
     writing = film.scene.writing
     rectangles = [(line.x, line.y, line.x + line.width, line.y + line.size) for line in writing.lines]
     if writing.card is not None:

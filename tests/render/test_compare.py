@@ -67,7 +67,7 @@ def test_each_panel_holds_the_lines_of_all_motions(solved: dict[str, Motion]) ->
     assert {"as it is", "faster", "2 motions over time"} <= said
 
 
-def test_of_many_panels_those_that_differ_most_are_shown(solved: dict[str, Motion]) -> None:
+def test_panels_that_differ_most_are_shown(solved: dict[str, Motion]) -> None:
     motion = solved["four_bar"]
     many = {f"j{k}": motion.joints["A"] for k in range(20)}
     other = msgspec.structs.replace(motion.joints["A"], fx=(3.0 * np.array(motion.joints["A"].fx)).tolist())
@@ -97,7 +97,7 @@ def test_a_variant_without_a_driver_or_force_leaves_its_lines_out() -> None:
     assert [len(axes.lines) for axes in figure.axes] == [1, 1]
 
 
-def test_what_there_is_nothing_to_compare_of_is_told(solved: dict[str, Motion]) -> None:
+def test_quantities_without_a_comparison_are_named(solved: dict[str, Motion]) -> None:
     Out("four_bar-longer").motion.unlink()
     with pytest.raises(UserError, match=r"data\.json of 'longer' is missing; run make compare-four-bar"):
         compare.run("four_bar")

@@ -22,7 +22,7 @@ from tools.models.motions import bouncing_ball, four_bar_motion
 
 
 def noise(path: Path, size: tuple[int, int]) -> None:
-    """What a JPEG is worst at."""
+    """Return noise, the worst case of a JPEG."""
     path.parent.mkdir(parents=True, exist_ok=True)
     Image.fromarray(np.random.default_rng(1).integers(0, 255, (size[1], size[0], 3), dtype=np.uint8)).save(path)
 
@@ -58,7 +58,7 @@ def plain(red: float) -> bytes:
     return buffer.getvalue()
 
 
-def test_of_many_posters_those_least_alike_are_on_the_strip() -> None:
+def test_the_strip_has_the_least_similar_posters() -> None:
     reds = [*range(20), 60, *(70 + 14 * k for k in range(12))]  # the first twenty are hardly to be told apart
     with Image.open(io.BytesIO(strip([plain(red) for red in reds]))) as sheet:
         assert sheet.size == (1280, 720)

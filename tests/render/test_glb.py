@@ -64,7 +64,7 @@ def test_between_samples_it_is_as_near(out: Out) -> None:
 
 
 @pytest.mark.parametrize("gravity", [(0.0, 0.0), (0.0, -9.81), (3.0, 4.0)])
-def test_what_points_up_is_y(out_root: Path, gravity: tuple[float, float]) -> None:
+def test_the_upward_axis_is_y(out_root: Path, gravity: tuple[float, float]) -> None:
     """On a desk z, else the direction against gravity; the normal of a plane that stands comes towards the viewer."""
     mount = mounted(gravity)
     written = film_fixture.write(mount=mount)

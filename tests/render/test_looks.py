@@ -23,7 +23,7 @@ from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, Out, mechanism_names
 
 MOST = 1 / 3
-"""Of the gallery, with one look."""
+"""Part of the gallery that may have one look."""
 
 
 def test_each_name_has_its_look_and_no_other():
@@ -57,7 +57,7 @@ def test_a_look_has_light_or_is_drawn_and_its_page_follows_the_theme(name: str):
         ("wall", False, True, 0.2, "daylight"),
     ],
 )
-def test_what_files_say_chooses_the_look(mount: Kind, engine: bool, driven: bool, size: float, look: str):
+def test_facts_of_the_files_choose_the_look(mount: Kind, engine: bool, driven: bool, size: float, look: str):
     assert chosen(Family(mount, engine, driven, size)) == look
 
 

@@ -20,7 +20,7 @@ MOTION = four_bar_motion()
 
 
 @pytest.fixture
-def made(out_root: Path) -> None:
+def four_bar_files(out_root: Path) -> None:
     """A four-bar with all its files."""
     out = film_fixture.write()
     pair = PairClearance(
@@ -35,7 +35,7 @@ def made(out_root: Path) -> None:
     )  # fmt: skip
 
 
-@pytest.mark.usefixtures("made")
+@pytest.mark.usefixtures("four_bar_files")
 def test_a_row_has_the_numbers_of_what_was_done(capsys: pytest.CaptureFixture[str]) -> None:
     facts.run(["four_bar 125 done\n", "broken 3 failed\n", "cleaned 1 done\n"])
     said = capsys.readouterr().out.splitlines()
@@ -50,13 +50,13 @@ def test_a_row_has_the_numbers_of_what_was_done(capsys: pytest.CaptureFixture[st
     assert max(map(len, said)) <= facts.WIDTH
 
 
-@pytest.mark.usefixtures("made")
-def test_what_a_failed_run_left_is_not_told() -> None:
+@pytest.mark.usefixtures("four_bar_files")
+def test_results_of_a_failed_run_are_left_out() -> None:
     assert facts.row_of("four_bar 2 failed") == ["four_bar", "2.0 s", "", "", "", "", "failed"]
 
 
 def test_the_fastest_place_counts_centres_of_mass(out_root: Path) -> None:
-    """Of a bar that turns about its frame, which stands still itself: omega times the way to the centre of mass."""
+    """A bar turns about its frame, which stands still: its centre of mass moves at omega times its radius."""
     motion = read_motion(film_fixture.write().motion)
     crank = motion.bodies["crank"]
     motion.bodies, motion.points, motion.joints = {"crank": crank}, {}, {}

@@ -50,7 +50,7 @@ def test_near_a_singular_pose_an_axis_is_cut_and_says_so() -> None:
         assert bool(drawn.axes[1].get_ylim()[1] < 10) is cut
 
 
-def test_what_turns_round_and_round_is_drawn_within_a_turn() -> None:
+def test_angles_that_keep_turning_are_drawn_within_a_turn() -> None:
     (_, motion), upwards = ("four_bar", MOTION), np.degrees(MOTION.bodies["crank"].theta)
     for turns in (1.0, -3.0):
         crank = msgspec.structs.replace(motion.bodies["crank"], theta=np.radians(turns * upwards).tolist())

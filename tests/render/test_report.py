@@ -287,7 +287,7 @@ def test_cranks_turn_and_rockers_swing() -> None:
     assert f"| point P | {spans[0]} | {spans[1]} |  |" in report.report(motion, None, None)
 
 
-def test_what_is_let_go_has_its_flight_told() -> None:
+def test_released_bodies_have_their_flight_reported() -> None:
     motion = thrown()
     (row, event), arm = releases(motion)["hinge"], motion.bodies["arm"]
     assert (event, list(releases(motion))) == ("let_go", ["hinge"])

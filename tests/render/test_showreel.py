@@ -121,7 +121,7 @@ def test_films_are_heard_under_their_pictures(out_root: Path) -> None:
 
 
 def test_films_have_their_captions_where_they_are(out_root: Path) -> None:
-    """Of two that are joined, and of one of another rate, which is encoded again; a film without a file has none."""
+    """Two films are joined, and one of another rate is encoded again; one without a file has no captions."""
     film(out_root, "pendulum", 30)
     first = film(out_root, "four_bar", 60)
     other = film(out_root, "jansen_leg", 48, fps=24, size=(64, 64))
@@ -160,7 +160,7 @@ def shown_at(path: Path) -> list[float]:
     return sorted(int(row[2]) / ticks for row in rows)
 
 
-def test_what_is_missing_or_damaged_is_named(out_root: Path) -> None:
+def test_missing_or_damaged_films_are_named(out_root: Path) -> None:
     with pytest.raises(UserError, match="there is no film of any mechanism at tiny; make film-belt-drive PRESET=tiny"):
         showreel.run(TINY)
     path = film(out_root, "four_bar", 20)

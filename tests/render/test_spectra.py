@@ -88,7 +88,7 @@ def test_a_wheel_that_slows_down_is_looked_at_over_its_last_turn() -> None:
     assert computed.base == pytest.approx(1 / (2.0 - np.interp(crank.angle[-1] - 2 * np.pi, crank.angle, motion.time)))
 
 
-def test_what_turns_back_counts_from_there_and_what_never_turns_round_is_no_crank() -> None:
+def test_reversing_cranks_count_from_there_and_rockers_are_no_cranks() -> None:
     turned = wheel(8.0, rows=2000, torque=6.0)  # brakes, and then turns it the other way
     crank = crank_of(turned)
     assert crank is not None
@@ -203,7 +203,7 @@ def test_a_clockwise_driver_has_its_angle_as_axis_and_tells_how_long_a_turn_take
 
 @pytest.fixture
 def mechanism_py(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, out_root: Path) -> Path:
-    """Of a four-bar that is solved, for what SPECTRA says; of its other plots the energy alone is drawn."""
+    """Return a solved four-bar with these SPECTRA; of its other plots the energy alone is drawn."""
     monkeypatch.setattr(paths, "MECHANISMS", tmp_path)
     monkeypatch.setattr(plots, "plots_of", lambda _: ["energy"])
     (tmp_path / "four_bar").mkdir()
@@ -247,7 +247,7 @@ def test_other_words_are_refused(mechanism_py: Path, written: str, said: str) ->
         plots.run("four_bar")
 
 
-def test_what_every_mechanism_is_asked_for_is_left_out_where_it_is_not(mechanism_py: Path) -> None:
+def test_names_asked_of_all_mechanisms_are_left_out_where_missing(mechanism_py: Path) -> None:
     with pytest.raises(UserError, match="SPECTRA asks for 'valve'"):
         plots.run("four_bar", "valve,motor")
     plots.run("four_bar", "valve,motor", every=True)

@@ -59,7 +59,7 @@ def prims_of(stage: Usd.Stage) -> dict[str, Usd.Prim]:
     return prims
 
 
-def at(prim: Usd.Prim, code: float, point: tuple[float, float, float] = CORNER) -> list[float]:
+def world_place(prim: Usd.Prim, code: float, point: tuple[float, float, float] = CORNER) -> list[float]:
     """Where a point of a prim is in the world."""
     return list(UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(code).Transform(Gf.Vec3d(*point)))
 
@@ -73,9 +73,11 @@ def test_every_body_is_where_data_json_has_it(out: Out, form: str) -> None:
         for name, body in motion.bodies.items():
             c, s = math.cos(body.theta[k]), math.sin(body.theta[k])
             x, y = body.x[k] + c * CORNER[0] - s * CORNER[1], body.y[k] + s * CORNER[0] + c * CORNER[1]
-            assert at(prims[name], code) == pytest.approx([x, CORNER[2], -y], abs=1e-6)  # y is up
-        assert at(prims["ground"], code) == pytest.approx([0.1, 0.03, -0.02], abs=1e-12)
-    assert at(prims["crank"], Usd.TimeCode.Default()) == pytest.approx(at(prims["crank"], 0.0), abs=1e-12)
+            assert world_place(prims[name], code) == pytest.approx([x, CORNER[2], -y], abs=1e-6)  # y is up
+        assert world_place(prims["ground"], code) == pytest.approx([0.1, 0.03, -0.02], abs=1e-12)
+    assert world_place(prims["crank"], Usd.TimeCode.Default()) == pytest.approx(
+        world_place(prims["crank"], 0.0), abs=1e-12
+    )
 
 
 def test_the_stage_says_its_units_and_its_clock(out: Out) -> None:
@@ -89,10 +91,10 @@ def test_the_stage_says_its_units_and_its_clock(out: Out) -> None:
 
 
 @pytest.mark.parametrize("gravity", [(0.0, 0.0), (0.0, -9.81), (3.0, 4.0)])
-def test_what_points_up_is_y(out_root: Path, gravity: tuple[float, float]) -> None:
+def test_the_upward_axis_is_y(out_root: Path, gravity: tuple[float, float]) -> None:
     mount = mounted(gravity)
     stage = opened(film_fixture.write(mount=mount))
-    assert at(prims_of(stage)["ground"], 0.0, mount.up) == pytest.approx([0.0, 1.0, 0.0], abs=1e-12)
+    assert world_place(prims_of(stage)["ground"], 0.0, mount.up) == pytest.approx([0.0, 1.0, 0.0], abs=1e-12)
 
 
 def test_meshes_and_materials_are_those_of_the_parts(out: Out) -> None:
@@ -134,7 +136,7 @@ def same_as_glb(film: Film, folder: Path) -> set[str]:
         seconds = film.motion.time[k] - film.motion.time[0]
         code, matrices = seconds * stage.GetTimeCodesPerSecond(), read.matrices(seconds)
         for name in meshes:
-            theirs, ours = _points(read, name, matrices[name]), _of(prims[name], code)
+            theirs, ours = _points(read, name, matrices[name]), _world_points(prims[name], code)
             assert ours == pytest.approx(theirs, abs=5e-4 if len(read.weights[name]) else 2e-6), name
     return meshes
 
@@ -151,7 +153,7 @@ def _points(read: GlbFile, name: str, matrix: np.ndarray) -> np.ndarray:
     return (np.column_stack([points, np.ones(len(points))]) @ matrix.T)[:, :3]
 
 
-def _of(prim: Usd.Prim, code: float) -> np.ndarray:
+def _world_points(prim: Usd.Prim, code: float) -> np.ndarray:
     below = [prim] if prim.IsA(UsdGeom.Mesh) else prim.GetChildren()
     points = np.concatenate([np.array(UsdGeom.Mesh(part).GetPointsAttr().Get(code), float) for part in below])
     matrix = np.array(UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(code))  # rows: points stand on its left

@@ -91,7 +91,7 @@ def test_places_come_back_from_a_file(tmp_path: Path) -> None:
     assert file.read_bytes() == saved
 
 
-def test_what_acts_in_one_plane_is_warned_of_in_two() -> None:
+def test_forces_of_one_plane_are_warned_of_in_two() -> None:
     m = Mechanism("gears")
     first, second = m.body("one", z=0.01), m.body("two", z=0.03)
     for k, body in enumerate((first, second)):

@@ -83,7 +83,7 @@ def test_a_cycle_of_two_turns_has_half_orders() -> None:
     assert got.amplitude[got.index(2)] == pytest.approx(1.0)
 
 
-def test_what_does_not_repeat_says_so() -> None:
+def test_motions_without_a_period_are_reported() -> None:
     sol = engine().sweep(duration=0.3, steps=1080)
     assert sol.orders(sol.t).gap == pytest.approx(1 / 3)
 

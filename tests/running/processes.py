@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
+import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +32,14 @@ def working_for(folder: Path) -> dict[int, str]:
 def ends_with_us() -> None:
     """For ``preexec_fn``: a process of tests that are killed gets SIGTERM, and is not left behind."""
     end_with_parent(signal.SIGTERM)
+
+
+def until(is_so: Callable[[], object], seconds: float = 60.0) -> None:
+    """Wait until something is so. Raises AssertionError after so many seconds."""
+    end = time.monotonic() + seconds
+    while not is_so():
+        assert time.monotonic() < end, f"not so after {seconds:g} s"
+        time.sleep(0.05)
 
 
 def run_to_its_end(command: list[str], seconds: float, **options: Any) -> subprocess.CompletedProcess[str]:

@@ -71,7 +71,7 @@ SAMPLES: dict[str, tuple[str, ...]] = {
     "tests/shared/test_lineage.py::test_whatever_ends_run_all_ends_its_stages": ("make-15", "make-9", "the night-9"),
     "tests/shared/test_shapes.py::test_every_letter_engraves": ("A", "B", "O", "8"),
     "tests/shared/test_shapes.py::test_socket_screw": ("1.6", "5", "24"),
-    "tests/studio/night/test_night.py::test_what_crashes_is_started_once_more": ("crash",),
+    "tests/studio/night/test_night.py::test_crashed_steps_are_started_once_more": ("crash",),
     "tests/studio/night/test_night.py::test_whatever_ends_a_night_ends_its_stages_and_status_tells": ("15", "9"),
     "tests/studio/test_fetch.py::test_a_killed_transfer_goes_on": ("9", "None"),
 }

@@ -108,7 +108,9 @@ def test_any_field_may_be_wrong(model: Callable[[], dict[str, Any]], tmp_path: P
         except Exception as error:
             raise AssertionError(f"{what}: {type(error).__name__}: {error}") from error
         else:
-            number = isinstance(_at(written, place), int | float) and not isinstance(_at(written, place), bool)
+            number = isinstance(_value_of(written, place), int | float) and not isinstance(
+                _value_of(written, place), bool
+            )
             assert not (number and isinstance(bad, str | bool | list | dict)), f"{what} is accepted"
             accepted.append((what, m))
     for k in random.choice(len(accepted), min(len(accepted), 15), replace=False):
@@ -121,7 +123,7 @@ def test_any_field_may_be_wrong(model: Callable[[], dict[str, Any]], tmp_path: P
             raise AssertionError(f"{what}: {type(error).__name__}: {error}") from error
 
 
-def _at(written: Any, place: tuple) -> Any:
+def _value_of(written: Any, place: tuple) -> Any:
     for key in place:
         written = written[key]
     return written
@@ -139,7 +141,7 @@ def _at(written: Any, place: tuple) -> Any:
     ],
     ids=["lists", "objects", "infinite", "digits", "twins", "empty"],
 )
-def test_what_is_no_model_is_told_with_its_file(text: str, says: str, tmp_path: Path) -> None:
+def test_files_without_a_model_are_named(text: str, says: str, tmp_path: Path) -> None:
     path = tmp_path / "model.json"
     path.write_text(text)
     with pytest.raises(ModelError, match=says) as told:

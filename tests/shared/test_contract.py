@@ -152,7 +152,7 @@ REFUSED: dict[str, tuple[Edit, str]] = {
 
 
 @pytest.mark.parametrize(("edit", "words"), REFUSED.values(), ids=REFUSED.keys())
-def test_what_does_not_hold_together_is_refused_with_file_and_field(path: Path, edit: Edit, words: str) -> None:
+def test_inconsistent_files_are_refused_with_file_and_field(path: Path, edit: Edit, words: str) -> None:
     document = json.loads(CONTENT)
     edit(document)
     path.write_text(json.dumps(document))
@@ -324,7 +324,7 @@ def test_both_rows_of_an_event_may_share_its_time(path: Path) -> None:
     assert contract.read_motion(path) == ball
     row = ball.time.index(ball.events[0].time)
     assert ball.time[row] == ball.time[row + 1]
-    with pytest.raises(UserError, match=rf"time\[{row + 1}\] = .* no event has that time; only right before and after"):
+    with pytest.raises(UserError, match=rf"time\[{row + 1}\] = .* no event has that time. Only right before and after"):
         contract.write_motion(path, msgspec.structs.replace(ball, events=[]))
     leaping = list(ball.bodies["ball"].y)
     leaping[row] += 0.01

@@ -85,7 +85,7 @@ def test_a_killed_writer_keeps_the_old_file(target: Path) -> None:
     assert target.read_bytes() == b"old"
 
 
-def test_what_a_killed_writer_left_is_removed_and_what_is_being_written_is_not(target: Path) -> None:
+def test_files_of_a_killed_writer_are_removed_and_open_ones_are_not(target: Path) -> None:
     elsewhere = target.with_name("elsewhere")
     elsewhere.write_bytes(b"a file of the user's")
     target.with_name(".data-0123abcd.json").write_bytes(b"part")

@@ -8,14 +8,13 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from shared.stage.paths import ROOT
 from shared.stage.signals import PERIOD, is_ending
-from tests.running.processes import command_lines, working_for
+from tests.running.processes import command_lines, until, working_for
 
 STAGE = """
 import sys, time
@@ -65,12 +64,12 @@ def test_whatever_ends_run_all_ends_its_stages(tmp_path: Path, victim: str, how:
         stderr=subprocess.DEVNULL,
     )
     try:
-        wait_until(left.exists)
+        until(left.exists)
         said = f"{sys.executable} -m studio.night run"  # the shell above it has these words, too
         nights = [pid for pid, words in command_lines().items() if words.startswith(said) and str(script) in words]
         os.kill(process.pid if victim == "make" else nights[0], how)
         process.wait(timeout=20)
-        wait_until(lambda: not working_for(left))
+        until(lambda: not working_for(left))
         assert not left.exists()
     finally:
         for pid in working_for(tmp_path):
@@ -85,12 +84,12 @@ def test_a_command_outlives_the_shell_that_started_it(tmp_path: Path) -> None:
     command = f"nohup sh -c {shlex.quote(program)} > '{tmp_path}/log' 2>&1 &"
     subprocess.run(["sh", "-c", command], env=os.environ | {"PYTHONPATH": str(ROOT)}, check=True)
     try:
-        wait_until(left.exists)
+        until(left.exists)
         time.sleep(3 * PERIOD)
         [process] = working_for(left)
         assert left.exists(), (tmp_path / "log").read_text()
         os.kill(process, signal.SIGTERM)
-        wait_until(lambda: not left.exists())
+        until(lambda: not left.exists())
     finally:
         for pid in working_for(tmp_path):
             os.kill(pid, signal.SIGKILL)
@@ -106,7 +105,7 @@ def test_a_stage_that_ends_with_its_command_says_why(tmp_path: Path) -> None:
             stderr=subprocess.PIPE,
             text=True,
         )
-        wait_until(left.exists)
+        until(left.exists)
         command.kill()
     _, said = stage.communicate(timeout=20)
     assert stage.returncode == 128 + signal.SIGTERM
@@ -125,10 +124,3 @@ def test_a_process_that_starts_another_is_not_ending(blocked: str, ending: bool)
         child.stdout.readline()
         assert is_ending(child.pid) == ending
         child.kill()
-
-
-def wait_until(condition: Callable[[], bool], seconds: float = 20.0) -> None:
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.05)

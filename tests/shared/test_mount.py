@@ -50,7 +50,7 @@ def test_a_file_without_a_mount_is_of_a_machine_on_a_desk(out_root: Path):
         (Mount(kind="ceiling", up=(0.0, 1.0, 0.0)), "kind"),  # type: ignore[arg-type]
     ],
 )
-def test_what_cannot_be_is_refused(out_root: Path, mount: Mount, words: str):
+def test_invalid_requests_are_refused(out_root: Path, mount: Mount, words: str):
     out = film_fixture.write()
     parts = read_parts(out.parts)
     parts.mount = mount

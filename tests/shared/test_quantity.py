@@ -62,7 +62,7 @@ def test_no_number_has_an_exponent_five_digits_or_a_hyphen(value: float, unit: s
 
 
 @given(value=st.floats(1e-11, 9e14))
-def test_what_is_written_is_the_value_but_for_its_digits(value: float) -> None:
+def test_written_numbers_are_the_value_but_for_its_digits(value: float) -> None:
     number, unit = quantity.written(value, "N", 4).split(" ")
     factor = {prefix: 10.0**power for power, prefix in quantity.PREFIXES.items()}[unit.removesuffix("N")]
     assert math.isclose(float(number) * factor, value, rel_tol=6e-4)

@@ -35,7 +35,7 @@ def test_nothing_is_the_machine_itself() -> None:
 
 
 @pytest.mark.parametrize("text", ["big", "1:0", "0", "-1:20", "1:20:3", "1:1000000", "1e-2", "1:", "nan"])
-def test_what_is_no_scale_is_refused_with_what_to_write(text: str) -> None:
+def test_invalid_scales_are_refused_with_the_remedy(text: str) -> None:
     with pytest.raises(UserError, match=r"is not a scale between 1:10000 and 100:1; .* SCALE=1:20, 1/20 or 0\.05"):
         scale_of(text)
 

@@ -148,7 +148,7 @@ def test_rule_and_dial_engrave() -> None:
     checked(engraving.engraved(block, strokes, 3.0), 0)
 
 
-def test_what_cannot_be_engraved_is_named() -> None:
+def test_letters_that_cannot_be_engraved_are_named() -> None:
     with pytest.raises(ValueError, match="cannot engrave 'ß'"):
         engraving.text("ß", 5.0, 0.0, 0.0)
 

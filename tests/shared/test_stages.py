@@ -19,7 +19,7 @@ def out(out_root: Path) -> Out:
     return Out("four-bar")
 
 
-def made(out: Out, key: str = "k") -> Stage:
+def finish_stage(out: Out, key: str = "k") -> Stage:
     """Return a finished stage with two outputs, one outside the mechanism's folder."""
     stage = Stage(out, "film", key, [out.motion, out.film("draft")])
     for path in stage.outputs:
@@ -31,18 +31,18 @@ def made(out: Out, key: str = "k") -> Stage:
 
 def test_fresh_after_done_and_not_before(out: Out) -> None:
     assert not Stage(out, "film", "k", [out.motion]).is_fresh()
-    assert made(out).is_fresh()
+    assert finish_stage(out).is_fresh()
     assert Stage(out, "film", "k", [out.motion, out.film("draft")]).is_fresh()
 
 
 def test_another_key_or_another_output_is_not_fresh(out: Out) -> None:
-    made(out)
+    finish_stage(out)
     assert not Stage(out, "film", "other", [out.motion, out.film("draft")]).is_fresh()
     assert not Stage(out, "film", "k", [out.motion, out.film("draft"), out.poster]).is_fresh()
 
 
 def test_a_touched_output_stays_fresh(out: Out) -> None:
-    stage = made(out)
+    stage = finish_stage(out)
     os.utime(out.motion, (1, 1))
     assert stage.is_fresh()
 
@@ -59,14 +59,14 @@ def test_a_touched_output_stays_fresh(out: Out) -> None:
 )
 @pytest.mark.parametrize("which", ["motion", "film"])
 def test_a_damaged_output_is_noticed(out: Out, damage: Callable[[Path], object], which: str) -> None:
-    stage = made(out)
+    stage = finish_stage(out)
     damage(out.motion if which == "motion" else out.film("draft"))
     assert not stage.is_fresh()
 
 
 @pytest.mark.parametrize("content", [b"", b"{", b"[]", b'{"schema": "mbsd.stamp", "schema_version": 2}', b"\xff\xfe"])
 def test_a_damaged_stamp_means_again(out: Out, content: bytes) -> None:
-    stage = made(out)
+    stage = finish_stage(out)
     stage.stamp.write_bytes(content)
     assert not stage.is_fresh()
     assert stage.notes() == {}
@@ -75,7 +75,7 @@ def test_a_damaged_stamp_means_again(out: Out, content: bytes) -> None:
 
 
 def test_a_byte_above_0x7f_anywhere_in_a_stamp_means_again(out: Out) -> None:
-    stage = made(out)
+    stage = finish_stage(out)
     content = stage.stamp.read_bytes()
     for place in range(len(content)):
         stage.stamp.write_bytes(content[:place] + b"\xff" + content[place + 1 :])
@@ -84,20 +84,20 @@ def test_a_byte_above_0x7f_anywhere_in_a_stamp_means_again(out: Out) -> None:
 
 
 def test_a_stamp_of_brackets_means_again(out: Out) -> None:
-    stage = made(out)
+    stage = finish_stage(out)
     stage.stamp.write_bytes(stage.stamp.read_bytes().replace(b"3\n", b"[" * 100_000))
     assert not stage.is_fresh()
 
 
 def test_an_output_that_cannot_be_read_is_not_whole(out: Out, monkeypatch: pytest.MonkeyPatch) -> None:
-    stage = made(out)
+    stage = finish_stage(out)
     monkeypatch.setattr(stages, "file_hash", lambda _: Path("/dev/null/x").read_bytes())
     assert not stage.is_fresh()
 
 
 def test_notes_are_kept(out: Out) -> None:
     assert Stage(out, "film", "k", []).notes() == {}
-    made(out)
+    finish_stage(out)
     assert Stage(out, "film", "other", []).notes() == {"frames": 3}
 
 
@@ -108,7 +108,7 @@ def test_done_without_the_output_is_an_error_that_names_it(out: Out) -> None:
 
 
 def test_the_stamp_holds_no_path_and_no_time_of_this_machine(out: Out, tmp_path: Path) -> None:
-    stage = made(out)
+    stage = finish_stage(out)
     first = stage.stamp.read_bytes()
     stage.record(frames=3)
     assert stage.stamp.read_bytes() == first

@@ -14,7 +14,7 @@ from mbsd.studies import orders
 from mbsd.studies.orders import answer_of
 
 Acts = Callable[..., Any]
-"""What a worker answers for the arguments of its task: of a study functions, numbered points, and nothing."""
+"""A worker's answer to the arguments of its task: functions of a study, numbered points, nothing."""
 
 
 class Held(Future[Any]):

@@ -149,7 +149,7 @@ CHANGES: dict[str, Change] = {
     "a file read by a program": reading("import subprocess\n", f"float(subprocess.check_output(['cat', str({DATA})]))"),
     "a docstring that is read": script("def f():\n    '2.0'\n", "float(f.__doc__)"),
 }  # fmt: skip
-"""What has to be computed again."""
+"""Points that have to be computed again."""
 
 _CODE = (
     "K = 2.0\n"
@@ -175,4 +175,4 @@ SAME: dict[str, Change] = {
     "a file that is not read": Change(reading("", f"float({DATA}.read_text())").files | {"notes.md": "old"}, "notes.md", "old", "new"),
     "a file in another folder": Change(reading("", "len(list(HERE.glob('*.txt')))").files | {"a/b.txt": "old"}, "a/b.txt", "old", "new"),
 }  # fmt: skip
-"""What changes no number."""
+"""Changes of no number."""

@@ -58,7 +58,7 @@ class Folder:
         os.utime(file, (1e9, 1e9))  # before this process began
 
     def study(self, processes: int = 1, keep: bool = True, path: Path | None = None) -> list[float]:
-        """What measure gives at two points; ``computed`` says how many of them were not known."""
+        """Return measures at two points; ``computed`` is the number of points that were not known."""
         self.forget()
         self.computed = 0
         with self.patch.context() as patch:
@@ -110,7 +110,7 @@ def test_a_change_is_computed_again(folder: Folder, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", SAME)
-def test_what_changes_no_number_is_not_computed_again(folder: Folder, name: str) -> None:
+def test_changes_of_no_number_compute_nothing_again(folder: Folder, name: str) -> None:
     change = SAME[name]
     begin(folder, change)
     first = folder.study()
@@ -143,7 +143,7 @@ def measure(m):
 FILES = {"script.py": MIXED, "helper.py": "K = 2.0\n", "other.py": "K = 5.0\n", "data.txt": "7.0"}
 
 
-def test_what_processes_load_and_read_counts(folder: Folder) -> None:
+def test_files_that_processes_load_and_read_count(folder: Folder) -> None:
     for name, text in FILES.items():
         folder.write(name, text)
     first = folder.study(2)
@@ -275,7 +275,7 @@ print(list(study(build, {"x": [1.0, 2.0]}, measure, processes=PROCESSES, progres
     assert run(code.replace("processes=1", "processes=2"))[0] == "[6.0, 12.0]"
 
 
-def test_what_has_no_content_is_refused_with_the_remedy(tmp_path: Path) -> None:
+def test_objects_without_content_are_refused_with_the_remedy(tmp_path: Path) -> None:
     lock = threading.Lock()
     with pytest.raises(ModelError, match=r"refers to <unlocked .*content is unknown.*folder=None"):
         mbsd.study(lambda x: x, {"x": [1]}, lambda m: {"y": lock.locked()}, folder=tmp_path)

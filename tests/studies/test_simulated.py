@@ -80,7 +80,7 @@ def test_processes_and_what_is_kept_change_nothing(tmp_path: Path) -> None:
         ({"stiffness": [5.0] * 12}, "the same mechanism"),
     ],
 )
-def test_what_differs_otherwise_goes_through_the_loop_as_it_was_built_and_says_so(grid: dict, why: str) -> None:
+def test_other_differences_run_as_built_and_are_reported(grid: dict, why: str) -> None:
     table = _studied(grid, simulated({"end": final("leaf.theta")}, 0.5, steps=10))
     assert table.attrs["way"].startswith("in one compiled loop, each is prepared anew")
     assert why in table.attrs["way"]
@@ -218,7 +218,7 @@ def test_it_measures_a_mechanism_by_itself_and_refuses_what_is_no_measure() -> N
         (simulated({"reason": final("leaf.theta")}, 1.0), "two columns 'reason'"),
     ],
 )
-def test_what_cannot_be_measured_is_refused_before_anything_is_built_for_it(asked: Simulated, words: str) -> None:
+def test_impossible_measures_are_refused_before_anything_is_built(asked: Simulated, words: str) -> None:
     built = []
 
     def build(stiffness: float) -> Mechanism:

@@ -16,23 +16,16 @@ import pytest
 from pandas.testing import assert_frame_equal
 
 import mbsd
-from mbsd import Mechanism, ModelError, ModelWarning, constant_rate
+from mbsd import Mechanism, ModelError, ModelWarning
 from mbsd.studies import work
+from tools.models import linkages
 
 STEPS = 36
 LENGTHS = {"crank": [0.03, 0.04, 0.2], "rocker": np.array([0.08, 0.09])}
 
 
 def build(crank: float, rocker: float) -> Mechanism:
-    m = Mechanism("four_bar")
-    a, b, c = m.bar("crank", crank), m.bar("coupler", 0.12), m.bar("rocker", rocker)
-    m.revolute("A", m.ground.at(0, 0), a.start)
-    m.revolute("B", a.end, b.start)
-    m.revolute("C", b.end, c.end)
-    m.revolute("D", m.ground.at(0.12, 0), c.start)
-    m.drive_angle("motor", a, constant_rate(2 * math.pi))
-    m.start_near(crank=0, coupler=60, rocker=100)
-    return m
+    return linkages.four_bar(0.12, crank, 0.12, rocker, (60, 100))
 
 
 def swing(m: Mechanism) -> dict[str, float]:
@@ -89,7 +82,7 @@ def test_points_may_be_listed(change: str) -> None:
     assert list(table["swing"]) == [whole["swing"][3], whole["swing"][0]]
 
 
-def test_what_is_known_is_not_computed_again(tmp_path: Path, calls: list[Any]) -> None:
+def test_known_points_are_not_computed_again(tmp_path: Path, calls: list[Any]) -> None:
     first = study(build, LENGTHS, swing, folder=tmp_path)
     assert len(calls) == 6
     assert_frame_equal(study(build, LENGTHS, swing, folder=tmp_path), first)
@@ -215,7 +208,7 @@ def test_progress_is_told_in_lines_where_no_terminal_listens(capsys: pytest.Capt
         ({"client": "tcp://127.0.0.1:9"}, "no scheduler answers at tcp://127.0.0.1:9"),
     ],
 )
-def test_what_cannot_be_is_refused(keywords: dict[str, Any], said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_invalid_requests_are_refused(keywords: dict[str, Any], said: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("mbsd.dealing.connection.TIMEOUT", 0.2)
     arguments = {"build": build, "grid": LENGTHS, "measure": swing} | keywords
     with pytest.raises(ModelError, match=said.replace("(", r"\(")):
@@ -223,7 +216,7 @@ def test_what_cannot_be_is_refused(keywords: dict[str, Any], said: str, monkeypa
 
 
 @pytest.mark.parametrize("given", [[1, 2], {"swing": "x"}, {3: 1.0}, {"swing": [1.0, 2.0]}])
-def test_what_measure_gives_wrong_is_the_reason(given: Any) -> None:
+def test_wrong_results_of_measure_are_the_reason(given: Any) -> None:
     with pytest.warns(ModelWarning, match="all of 1 point failed, the first for: ModelError: measure"):
         table = study(build, [{"crank": 0.03, "rocker": 0.09}], lambda m: given)
     assert table["reason"][0].startswith("ModelError: measure gives")

@@ -54,7 +54,7 @@ def test_the_table_is_that_of_a_local_study(client: Any) -> None:
     assert_frame_equal(mbsd.study(build, LENGTHS, fastest, client.scheduler.address, **QUIET), alone)
 
 
-def test_what_workers_read_and_import_decides_what_is_known(
+def test_files_that_workers_read_and_import_decide_which_points_are_known(
     client: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Workers live on: what they have imported for one call is not what the next one means."""

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-import re
 import threading
 import time
-import warnings
 from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import replace
@@ -26,7 +24,7 @@ from mbsd.dependencies.inputs import Inputs
 from mbsd.studies import orders, work
 from mbsd.studies.orders import answer_of, reader
 from mbsd.studies.work import Order
-from tests.studies.fake_cluster import Acts, FakeClient, Held
+from tests.studies.fake_cluster import Acts, FakeClient
 
 GRID = {"length": [0.1 * n for n in range(1, 13)]}
 NO_INPUTS = Inputs().states()
@@ -111,17 +109,6 @@ def test_a_worker_that_lies_is_left_out(kind: str, alone: Any) -> None:
     assert client.asked.count("liar") <= 2  # what it had before it was found out
 
 
-def test_where_all_lie_the_study_ends_with_their_names() -> None:
-    client = FakeClient({"first": LIES["None"], "second": LIES["too few"]})
-    began = time.monotonic()
-    with warnings.catch_warnings(), pytest.raises(ModelError, match=r"no worker of tcp://scheduler") as refusal:
-        warnings.simplefilter("ignore")
-        study(client)
-    assert re.search(r"; first: [^;]*NoneType", str(refusal.value))
-    assert re.search(r"; second: [^;]*answers for 0 of 1", str(refusal.value))
-    assert time.monotonic() - began < 5.0
-
-
 @pytest.mark.filterwarnings("ignore:study")
 @pytest.mark.parametrize("after", ["grace", "unknown"])
 def test_a_worker_that_never_answers_keeps_nothing_back(
@@ -188,30 +175,6 @@ def test_a_worker_that_ends_each_time_is_not_the_points_fault(alone: Any) -> Non
     assert_frame_equal(study(client), alone)
 
 
-def test_a_result_that_is_lost_with_its_worker_while_it_is_fetched_is_computed_again(alone: Any) -> None:
-    """What was on its way never comes, and nobody waits for it."""
-    over = threading.Event()
-
-    def goes() -> None:
-        client.workers.pop(client.asked[0], None)
-        over.wait(60.0)
-        raise TimeoutError
-
-    class Client(FakeClient):
-        def submit(self, *arguments: Any, workers: list[str], **more: Any) -> Held:
-            future = super().submit(*arguments, workers=workers, **more)
-            if len(self.asked) == 1:
-                future.fetched = goes
-            return future
-
-    client = Client({"a": answer_of, "b": answer_of})
-    began = time.monotonic()
-    assert_frame_equal(study(client), alone)
-    over.set()
-    assert client.asked[0] not in client.workers
-    assert time.monotonic() - began < 10.0
-
-
 def test_a_scheduler_that_goes_is_a_sentence_and_what_is_computed_is_kept(tmp_path: Path, alone: Any) -> None:
     client = FakeClient({})
 
@@ -243,7 +206,7 @@ def test_an_error_of_the_connection_is_a_sentence(error: Exception) -> None:
         study(client)
 
 
-def test_what_is_waited_for_is_told_soon(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_reason_for_waiting_is_reported_soon(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(deal, "SOON", 0.1)
     monkeypatch.setattr(deal, "WAIT", 0.5)
     with (

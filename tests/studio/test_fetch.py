@@ -129,9 +129,7 @@ def test_two_at_once_do_not_disturb_each_other(out_root: Path, project: Path) ->
     assert [path.name for path in out_root.iterdir()] == ["films"]
 
 
-def test_what_stands_in_the_way_is_told(
-    out_root: Path, project: Path, other: Machine, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_obstacles_are_reported(out_root: Path, project: Path, other: Machine, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(UserError, match=r"nowhere/out/films does not exist; make fetch HOST=.* FOLDER=<the project's"):
         fetch.run(HOST, str(project / "nowhere"))
     assert [path.name for path in out_root.iterdir()] == ["films"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 from pathlib import Path
@@ -56,6 +57,21 @@ def test_plates_and_lists_are_laid_out_again_as_they_were(
     out.parts.write_bytes(out.parts.read_bytes() + b"\n")
     (finding,) = products.of_print(out, scratch / out.name, again)
     assert str(finding).endswith("made from other inputs, parts.json changed since")
+
+
+def test_plates_of_a_mechanism_that_has_changed_are_made_from_other_inputs(
+    press: Press, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its parts are of the older mechanism too, so plates follow from parts.json as it stands."""
+    out, scratch = press.out, tmp_path / "scratch"
+    again = _again(out, scratch, monkeypatch)
+    print_stage.run(out.name)
+    rebuilt = scratch / out.name / "parts" / "parts.json"
+    described = json.loads(rebuilt.read_bytes())
+    described["provenance"]["inputs"] = "0" * 64
+    rebuilt.write_text(json.dumps(described))
+    (finding,) = products.of_print(out, scratch / out.name, again)
+    assert finding.verdict == "outdated"
 
 
 def test_plates_of_which_no_record_is_kept_are_not_compared(press: Press, tmp_path: Path) -> None:

@@ -125,7 +125,7 @@ def test_a_real_mechanism_is_solved_again(out_root: Path) -> None:
     assert "make run-pendulum, then again" in done.stdout
 
 
-def test_what_is_not_there_is_told(out_root: Path) -> None:
+def test_missing_products_are_reported(out_root: Path) -> None:
     with pytest.raises(UserError, match=r"four_bar: .*data\.json does not exist; make run-four-bar first"):
         verify.run("four_bar", TINY)
     assert not out_root.exists()

@@ -8,7 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, ModelError, SynthesisError, constant_rate, fit_path
+from mbsd import Mechanism, ModelError, SynthesisError, fit_path
+from tests.synthesis.test_path_tangents import geared
+from tools.models import linkages
 
 REFERENCE = Path(__file__).parents[1] / "published" / "reference"
 BOUNDS = {
@@ -28,16 +30,7 @@ def four_bar(
     D: tuple[float, float] = (0.4, 0.02),
     P: tuple[float, float] = (0.2, 0.1),
 ) -> Mechanism:
-    m = Mechanism("four-bar")
-    a, b, c = m.bar("crank", crank), m.bar("coupler", coupler, mass=0.3), m.bar("rocker", rocker)
-    m.revolute("A", m.ground.at(0, 0), a.start)
-    m.revolute("B", a.end, b.start)
-    m.revolute("C", b.end, c.end)
-    m.revolute("D", m.ground.at(*D), c.start)
-    m.drive_angle("motor", a, constant_rate(2 * np.pi))
-    m.trace("P", b.at(*P))
-    m.start_near(crank=0, coupler=45, rocker=90)
-    return m
+    return linkages.four_bar(D, crank, coupler, rocker, (45, 90), masses=(None, 0.3, None), traced=P)
 
 
 def traced(m: Mechanism, count: int = 16, name: str = "P") -> np.ndarray:
@@ -113,21 +106,6 @@ def test_numbers_of_the_authors_function_are_varied() -> None:
 
 
 def test_what_is_no_chain_of_dyads_is_swept_one_by_one() -> None:
-    def geared(far: float = 0.30, arm: float = 0.12) -> Mechanism:
-        m = Mechanism("geared")
-        first, second = m.body("one"), m.body("two")
-        left, right = m.bar("left", 0.25), m.bar("right", 0.25)
-        m.revolute("O", m.ground.at(0, 0), first.origin)
-        m.revolute("Q", m.ground.at(far, 0), second.origin)
-        m.gear_pair("mesh", first.origin, second.origin, far / 2, far / 2)
-        m.revolute("A", first.at(0.05, 0), left.start)
-        m.revolute("B", second.at(-0.05, 0), right.start)
-        m.revolute("C", left.end, right.end)
-        m.drive_angle("motor", first, constant_rate(2 * np.pi))
-        m.trace("P", left.at(arm, 0.03))
-        m.start_near(left=60, right=120, two=0)
-        return m
-
     vary = {"far": (0.28, 0.34), "arm": (0.05, 0.2)}
     wanted = traced(geared(0.31, 0.15), 8)
     fit = fit_path(geared(), wanted, vary, build=geared, seed=1, starts=1, generations=8, steps=48)
@@ -195,17 +173,17 @@ def test_progress_is_told_and_may_end_the_fit() -> None:
         ({"point": "Q"}, "no traced point 'Q'"),
         ({"least_transmission": 2.0}, "below pi/2"),
         ({"starts": 0}, "starts is 0"),
-        ({"start": 1}, "four-bar: fit_path: there is no argument 'start', did you mean 'starts'"),
+        ({"start": 1}, "four_bar: fit_path: there is no argument 'start', did you mean 'starts'"),
         ({"progress": 1}, "must be a function"),
     ],
 )
-def test_what_cannot_be_is_refused(change: dict, says: str) -> None:
+def test_invalid_requests_are_refused(change: dict, says: str) -> None:
     arguments = {"points": [(0.1, 0.2), (0.2, 0.2)], "vary": {"crank": (0.05, 0.2)}} | change
     with pytest.raises(ModelError, match=says):
         fit_path(four_bar(), **arguments)
 
 
-def test_what_is_no_mechanism_is_refused() -> None:
+def test_objects_that_are_no_mechanism_are_refused() -> None:
     with pytest.raises(ModelError, match="fit_path: the mechanism is 3"):
         fit_path(3, [(0.1, 0.2), (0.2, 0.2)], {"crank": (0.05, 0.2)})
 

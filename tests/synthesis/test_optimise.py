@@ -66,7 +66,7 @@ def test_the_softest_closer_that_shuts_a_door_in_time() -> None:
         assert bool(m.simulate(4.0).body("rod").theta[-1] <= 0.05 + 1e-5) is shuts
 
 
-def test_what_the_author_builds_is_optimised_by_its_arguments() -> None:
+def test_functions_of_the_author_are_optimised_by_their_arguments() -> None:
     def build(weight: float = 0.5, arm: float = 0.05) -> Mechanism:
         return crank(weight, arm)
 
@@ -126,7 +126,7 @@ def test_maximise_and_a_search_that_meets_motions_that_are_none() -> None:
         ({"build": lambda stiff=3.0: door()}, "build has no argument 'closer.stiffness'"),
     ],
 )
-def test_what_cannot_be_asked_is_refused_before_anything_runs(
+def test_invalid_requests_are_refused_before_anything_runs(
     asked: dict[str, Any], says: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def ran(*given: Any) -> None:

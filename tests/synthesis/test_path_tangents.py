@@ -12,21 +12,13 @@ from mbsd.synthesis.designs import Designs, tangents_of_path
 from mbsd.synthesis.least_squares import Residuals
 from mbsd.synthesis.target import Target
 from mbsd.synthesis.variables import varied
+from tools.models import linkages
 
 GRID = np.linspace(0.0, 1.0, 25)
 
 
 def four_bar() -> Mechanism:
-    m = Mechanism("four-bar")
-    a, b, c = m.bar("crank", 0.1), m.bar("coupler", 0.38), m.bar("rocker", 0.3)
-    m.revolute("A", m.ground.at(0, 0), a.start)
-    m.revolute("B", a.end, b.start)
-    m.revolute("C", b.end, c.end)
-    m.revolute("D", m.ground.at(0.4, 0.02), c.start)
-    m.drive_angle("motor", a, constant_rate(2 * np.pi))
-    m.trace("P", b.at(0.2, 0.1))
-    m.start_near(crank=0, coupler=45, rocker=90)
-    return m
+    return linkages.four_bar((0.4, 0.02), 0.1, 0.38, 0.3, (45, 90), traced=(0.2, 0.1))
 
 
 def geared(far: float = 0.30, arm: float = 0.12, place: tuple[float, float] = (0.05, 0.0)) -> Mechanism:

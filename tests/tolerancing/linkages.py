@@ -4,26 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbsd import Mechanism, constant_rate
+from mbsd import Mechanism
+from tools.models import linkages
 
 GROUND, CRANK, COUPLER, ROCKER = 0.120, 0.040, 0.120, 0.090
 SIZES = {"crank": 5e-5, "coupler": 8e-5, "rocker": 6e-5, "D": {"x": 4e-5}}
 
 
 def four_bar(mass: float | None = None) -> Mechanism:
-    m = Mechanism("four_bar")
-    crank, coupler, rocker = (
-        m.bar(name, length, mass=mass) if mass else m.bar(name, length)
-        for name, length in (("crank", CRANK), ("coupler", COUPLER), ("rocker", ROCKER))
-    )
-    m.revolute("A", m.ground.at(0, 0), crank.start)
-    m.revolute("B", crank.end, coupler.start)
-    m.revolute("C", coupler.end, rocker.end)
-    m.revolute("D", m.ground.at(GROUND, 0), rocker.start)
-    m.drive_angle("motor", crank, constant_rate(2 * np.pi))
-    m.trace("P", coupler.at(0.06, 0.03))
-    m.start_near(crank=0, coupler=45, rocker=100)
-    return m
+    return linkages.four_bar(GROUND, CRANK, COUPLER, ROCKER, masses=3 * [mass], traced=(0.06, 0.03))
 
 
 def rocker_angle(angle, crank=CRANK, coupler=COUPLER, rocker=ROCKER, ground=GROUND, pin=(0.0, 0.0)):
@@ -39,15 +28,7 @@ def rocker_angle(angle, crank=CRANK, coupler=COUPLER, rocker=ROCKER, ground=GROU
 
 
 def slider_crank() -> Mechanism:
-    m = Mechanism("slider_crank")
-    crank, rod, slider = m.bar("crank", 0.05), m.bar("rod", 0.15), m.body("slider")
-    m.revolute("O", m.ground.at(0, 0), crank.start)
-    m.revolute("A", crank.end, rod.start)
-    m.revolute("B", rod.end, slider.origin)
-    m.prismatic("guide", m.ground.at(0, 0), slider.origin)
-    m.drive_angle("motor", crank, constant_rate(2 * np.pi))
-    m.start_near(crank=0, rod=0)
-    return m
+    return linkages.slider_crank(0.05, 0.15, 0.0, start=(0, 0))
 
 
 def switch() -> Mechanism:

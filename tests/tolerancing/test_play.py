@@ -117,7 +117,7 @@ def test_a_fit_is_a_play_with_its_tolerance() -> None:
         lambda: Clearance.from_fit(0.01, 7),
     ],
 )
-def test_what_is_no_play_is_refused(make) -> None:
+def test_invalid_play_is_refused(make) -> None:
     with pytest.raises(ModelError):
         make()
 

@@ -1,4 +1,4 @@
-"""What cannot be is refused before anything runs, by name and with the remedy."""
+"""Invalid requests are refused before anything runs, by name and with the remedy."""
 
 from __future__ import annotations
 

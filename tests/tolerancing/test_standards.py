@@ -140,6 +140,6 @@ def test_zones_lie_on_their_side_of_the_nominal_size() -> None:
 
 
 @pytest.mark.parametrize("name", ["H7", "g6/H7", "H7/g6/h6", "Z7/g6", "H17/g6", "H0/g6", "K7/h6", "H7g6", ""])
-def test_what_is_no_fit_is_refused(name: str) -> None:
+def test_invalid_fits_are_refused(name: str) -> None:
     with pytest.raises(ModelError):
         fit(0.010, name)

@@ -9,22 +9,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, ModelError, Tolerances, Uniform, constant_rate, harmonic, tolerances
+from mbsd import Mechanism, ModelError, Tolerances, Uniform, harmonic, tolerances
 from mbsd.measures import final, largest, samples
 from tests.tolerancing.linkages import SIZES, four_bar, rocker_angle, switch
+from tools.models import linkages
 
 
 def nearly_open() -> Mechanism:
     """A four-bar whose crank may just turn: s + l is 0.3 mm less than p + q."""
-    m = Mechanism("nearly open")
-    crank, coupler, rocker = m.bar("crank", 0.04), m.bar("coupler", 0.12), m.bar("rocker", 0.0403)
-    m.revolute("A", m.ground.at(0, 0), crank.start)
-    m.revolute("B", crank.end, coupler.start)
-    m.revolute("C", coupler.end, rocker.end)
-    m.revolute("D", m.ground.at(0.12, 0), rocker.start)
-    m.drive_angle("motor", crank, constant_rate(2 * np.pi))
-    m.start_near(crank=90, coupler=0, rocker=90)
-    return m
+    return linkages.four_bar(0.12, 0.04, 0.12, 0.0403, (0, 90), at=90)
 
 
 def test_one_by_one_is_all_at_once() -> None:
@@ -143,7 +136,7 @@ def failing() -> Tolerances:
 
 
 def test_machines_that_do_not_close_are_counted(failing: Tolerances) -> None:
-    """Those whose crank turns: shortest and longest link are no longer than the other two."""
+    """The crank turns if shortest and longest link are no longer than the other two."""
     crank, coupler, rocker = (np.array([0.04, 0.12, 0.0403]) + failing.deviations).T
     lengths = np.sort(np.column_stack([crank, coupler, rocker, np.full(len(crank), 0.12)]), axis=1)
     grashof = (lengths[:, 0] + lengths[:, 3] <= lengths[:, 1] + lengths[:, 2]) & (lengths[:, 0] == crank)
@@ -154,7 +147,7 @@ def test_machines_that_do_not_close_are_counted(failing: Tolerances) -> None:
     assert not failing.good[~grashof].any()
 
 
-def test_what_fails_is_not_within_the_limits(failing: Tolerances) -> None:
+def test_failed_mechanisms_are_not_within_the_limits(failing: Tolerances) -> None:
     assert failing.yields is not None
     assert failing.yields.part == pytest.approx(1.0 - len(failing.failed) / 4000)
     assert all(row.yield_halved > failing.yields.part for row in failing.rows)  # solved again, some close
@@ -171,7 +164,7 @@ def test_one_by_one_they_have_the_names_of_errors() -> None:
     )  # fmt: skip
     assert len(t.failed) == sum(t.failures.values()) > 0
     assert len(t.failures) == len({reason.partition(" (")[0] for reason in t.failures})
-    assert all("Error (nearly" in reason and reason.endswith(")") for reason in t.failures)
+    assert all("Error (four_bar" in reason and reason.endswith(")") for reason in t.failures)
 
 
 def test_tables_have_all_digits(tmp_path: Path) -> None:
@@ -239,7 +232,7 @@ def test_corners_that_all_fail_have_no_worst_case() -> None:
 
 
 def test_a_function_that_fails_for_a_machine_fails_that_machine_alone() -> None:
-    """What it gives besides numbers is refused, and so is a function that fails for the machine as it is given."""
+    """A result that is no number is refused, and so is a function that fails for the given machine."""
 
     def root(a: float = 1.0) -> float:
         if a > 1.08:
@@ -277,7 +270,7 @@ def test_machines_without_a_number_are_counted() -> None:
     assert np.isfinite(t.mean)
 
 
-def test_what_a_function_raises_of_the_machine_itself_is_raised() -> None:
+def test_exceptions_for_the_given_mechanism_are_raised() -> None:
     with pytest.raises(ModelError, match="did you mean 'rocker'"):
         tolerances(four_bar(), {"coupler": 1e-4}, lambda sol: sol.body("rockr").theta[0], n=5, way="sweep")
 

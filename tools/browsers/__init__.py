@@ -1,1 +1,4 @@
-"""The page in Firefox and in Safari's browser: `make view-engines`. CONTRIBUTING.md says what it needs."""
+"""The page in Firefox and in Safari's browser: `make view-engines`.
+
+CONTRIBUTING.md lists what it needs.
+"""

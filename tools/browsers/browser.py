@@ -64,7 +64,10 @@ def drag(places: Sequence[tuple[float, float]]) -> list[dict[str, Any]]:
 
 
 def fingers(*ways: Sequence[tuple[float, float]]) -> list[dict[str, Any]]:
-    """Return fingers that go down together, each along its places, as many of one as of another, and up together."""
+    """Return fingers that go down together, each along its places, and up together.
+
+    All have equally many places.
+    """
     hands = []
     for number, places in enumerate(ways):
         first, *others = [{"type": "pointerMove", "x": round(x), "y": round(y), "duration": 0} for x, y in places]

@@ -235,7 +235,10 @@ def listening(page: Path, copy: Path) -> Path:
 
 
 def use(browser: Browser, out: Out, page: Path, pictures: Path) -> Iterator[str]:
-    """Faults of the page of ``out``; ``page`` is its copy that listens, ``pictures`` a folder for what is seen."""
+    """Return faults of the page of ``out``.
+
+    ``page`` is its copy that listens, ``pictures`` a folder for what is seen.
+    """
     motion = read_motion(out.motion)
     yield from _opened(browser, page)
     if browser.ask(STATE)["view"] != "3d" or not browser.ask(f"!!{APP}.stage.solid"):

@@ -50,7 +50,7 @@ sol = m.sweep()"""
 CHANGED = "{crank:.3f}"
 """Where the number stands that changes (m)."""
 CRANK = 0.040
-"""What it is in mechanisms/four_bar (m)."""
+"""The crank's length in mechanisms/four_bar (m)."""
 RATE = 12
 """Frames a second."""
 SECONDS = 6.4

@@ -59,7 +59,7 @@ from tools.random_mechanisms.described import BASE, NOWHERE, Pose, Raised
 SLOPE_OF_LAST = 64.0
 """T_8' at the ends."""
 SLOPE_OF_SIX, BEND_OF_SIX = 21.0, 53.0
-"""What weights of six values at even times add up to, without their signs, in the derivatives at the first of them."""
+"""Sums of the weights, without their signs, of six values at even times in the derivatives at the first."""
 
 
 @dataclass(frozen=True)

@@ -69,6 +69,10 @@ class Free:
         options = {"times": self.grid, "tolerance": TOLERANCE} | options
         return attempt(lambda: m.simulate(**options))
 
+    def look(self, m: Mechanism) -> Solution:
+        """Simulate to a few outputs. Raises MechanismError where that fails."""
+        return m.simulate(times=self.grid[:3])
+
     def compared(self, name: str, m: Mechanism, words: Words = SAME, **options: Any) -> Outcome:
         """Simulate ``m`` and compare."""
         other, error = self.run(m, **options)

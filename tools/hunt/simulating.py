@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 
-from mbsd import Mechanism
 from mbsd.base.errors import SimulationError
 from mbsd.dynamics.integrators.kind import INTEGRATORS
 from mbsd.dynamics.simulate import integrator_named
-from tools.hunt.agreement import Words, turned_drivers
-from tools.hunt.checks import balanced, cannot_be_saved, closed, finite
+from tools.hunt.agreement import Words
+from tools.hunt.checks import balanced, closed, finite
 from tools.hunt.free_case import OUTPUTS, Free, nudged
 from tools.hunt.mixed_rows import beside_single_ones, mixed_rows
 from tools.hunt.moved_derivatives import beside_its_own
 from tools.hunt.outcome import AGREED, REFUSED, UNCLEAR, WRONG, Outcome, Variations
-from tools.hunt.same_bits import changed, pickled, renamed_differs, there_and_back
-from tools.hunt.sweeping import HEALTHY, random_frames, random_pose
-from tools.random_mechanisms.described import back, duplicate, on_a_base, restarted, seen_from, turnable
-from tools.random_mechanisms.similar import exchanged, in_units, mirrored, renamed, shuffled
+from tools.hunt.rewordings import IN_OTHER_WORDS, KEPT_AND_CHANGED, random_pose, size_of
+from tools.hunt.sweeping import HEALTHY
+from tools.random_mechanisms.described import duplicate, restarted
 from tools.random_mechanisms.subject import TOLERANCE, attempt
 
 STEPS = (1, 2, 3, 5, 12, 30, 360, 1440)
@@ -32,72 +28,7 @@ RUNS: Variations[Free] = Variations()
 variation = RUNS.enter
 
 
-def _size(case: Free) -> float:
-    return 1.0 if case.first is None else case.first.packed.size
-
-
-@variation("world turned and moved")
-def _world(case: Free) -> Outcome:
-    frames = random_frames(case.m, case.rng, _size(case), world=True, bodies=False)
-    return case.compared("world turned and moved", seen_from(case.m, frames), Words(frames))
-
-
-@variation("frames of bodies moved")
-def _frames(case: Free) -> Outcome:
-    frames = random_frames(case.m, case.rng, _size(case), world=False, bodies=True)
-    return case.compared("frames of bodies moved", seen_from(case.m, frames), Words(frames))
-
-
-@variation("on a welded base")
-def _base(case: Free) -> Outcome:
-    if "ground" not in turnable(case.m):
-        return Outcome("on a welded base", UNCLEAR, "a kind measures ground")
-    world = random_pose(case.rng, _size(case))
-    m = on_a_base(case.m, world, float(case.rng.choice([0.0, 1.0])))
-    return case.compared("on a welded base", m, Words({"ground": back(world)}))
-
-
-@variation("another order")
-def _order(case: Free) -> Outcome:
-    return case.compared("another order", shuffled(case.m, case.rng), Words({}))
-
-
-@variation("mirror image")
-def _mirror(case: Free) -> Outcome:
-    name, other = "mirror image", mirrored(case.m)
-    if other is None:
-        return Outcome(name, UNCLEAR, "a kind has a side of its own")
-    return case.compared(name, other, Words(mirrored=True))
-
-
-@variation("other units")
-def _units(case: Free) -> Outcome:
-    name, (length, mass) = "other units", 10.0 ** case.rng.uniform(-2.0, 3.0, 2)
-    other = in_units(case.m, float(length), float(mass))
-    if other is None:
-        return Outcome(name, UNCLEAR, "numbers of a kind whose units are not known")
-    return case.compared(name, other, Words(length=float(length), mass=float(mass)))
-
-
-@variation("other names")
-def _names(case: Free) -> Outcome:
-    name, other = "other names", renamed(case.m)
-    if other is None or case.first is None:
-        return Outcome(name, UNCLEAR, "no file could hold the model, or it was refused as built")
-    here, _ = case.run(case.m)
-    there, error = case.run(other)
-    if error is not None:
-        return case.refusal(name, error) if here is not None else Outcome(name, REFUSED, "with its own names, too")
-    assert here is not None
-    assert there is not None
-    differs = renamed_differs(here, there)
-    return Outcome(name, WRONG, "differs", differs) if differs else Outcome(name, AGREED)
-
-
-@variation("ends exchanged")
-def _ends(case: Free) -> Outcome:
-    m = exchanged(case.m, case.rng)
-    return case.compared("ends exchanged", m, Words({}, turned_drivers(case.m, m)))
+RUNS.update(IN_OTHER_WORDS)
 
 
 def _outputs(count: int) -> Callable[[Free], Outcome]:
@@ -136,33 +67,7 @@ def _independent(case: Free) -> Outcome:
     return case.compared("independent coordinates", case.m, formulation="independent", tolerance=tolerance)
 
 
-@variation("saved and loaded")
-def _saved(case: Free) -> Outcome:
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "model.json"
-        _, error = attempt(lambda: case.m.save(path))
-        if error is not None:
-            state = REFUSED if cannot_be_saved(case.m) else WRONG
-            return Outcome("saved and loaded", state, f"{type(error).__name__}, a function", str(error))
-        return case.compared("saved and loaded", Mechanism.load(path))
-
-
-@variation("changed and changed back")
-def _changed(case: Free) -> Outcome:
-    m = duplicate(case.m)
-    if not there_and_back(m, case.rng, lambda: m.simulate(times=case.grid[:3])):
-        return Outcome("changed and changed back", UNCLEAR, "nothing to change")
-    return case.compared("changed and changed back", m)
-
-
-@variation("changed equals fresh")
-def _changed_to(case: Free) -> Outcome:
-    return changed("changed equals fresh", case.m, case.rng)
-
-
-@variation("pickled and back")
-def _pickled(case: Free) -> Outcome:
-    return pickled("pickled and back", case.first)
+RUNS.update(KEPT_AND_CHANGED)
 
 
 @variation("mixed rows at once")
@@ -178,7 +83,7 @@ def _derivatives(case: Free) -> Outcome:
     name = "derivatives of the moved machine"
     if case.first is None or case.margin < HEALTHY or {"bifurcates", "jumps"} & case.subject.traits:
         return Outcome(name, UNCLEAR, "refused as built, near a singular pose, or accelerations jump")
-    pose = random_pose(case.rng, _size(case))
+    pose = random_pose(case.rng, size_of(case))
     return beside_its_own(name, case.built, case.rng, pose, case.first, is_free=True, nudged=nudged)
 
 
@@ -196,7 +101,7 @@ def _middle(case: Free) -> Outcome:
         return case.refusal(name, error)
     assert other is not None
     begun = np.abs(other.q[0] - case.first.q[k]).max()
-    if begun > 1e-3 * _size(case):  # a warning says so
+    if begun > 1e-3 * size_of(case):  # a warning says so
         return Outcome(name, UNCLEAR, "a disc near a crossing of its curve begins on the nearest branch")
     outcome = case.agreement(name, other, Words({}), TOLERANCE)
     if outcome.detail.startswith("energies"):  # counted from another start

@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from mbsd import Mechanism
 from mbsd.base.errors import MechanismError
 from mbsd.results.solution import Solution
-from tools.hunt.agreement import SAME, Words, compare_driven, turned_drivers
-from tools.hunt.checks import cannot_be_saved, driven_problems, expected_refusal
+from tools.hunt.agreement import SAME, Words, compare_driven
+from tools.hunt.checks import driven_problems, expected_refusal
 from tools.hunt.mixed_rows import designs_beside_sweeps
 from tools.hunt.moved_derivatives import beside_its_own
 from tools.hunt.outcome import AGREED, REFUSED, UNCLEAR, WRONG, Outcome, Variations
-from tools.hunt.same_bits import changed, pickled, renamed_differs, there_and_back
-from tools.random_mechanisms.described import Pose, back, duplicate, on_a_base, restarted, seen_from, turnable
-from tools.random_mechanisms.similar import exchanged, in_units, mirrored, renamed, shuffled
+from tools.hunt.rewordings import IN_OTHER_WORDS, KEPT_AND_CHANGED, random_frames, random_pose, size_of
+from tools.random_mechanisms.described import duplicate, restarted, seen_from
+from tools.random_mechanisms.similar import shuffled
 from tools.random_mechanisms.subject import Subject, attempt
 
 A_TURN = 360
@@ -53,11 +52,18 @@ class Driven:
         seen = 0.0 if self.first is None else float(self.first.singularity_margin.min())
         return min(seen, self.subject.distance) < HEALTHY
 
-    def against_first(
-        self, name: str, m: Mechanism, times: np.ndarray, words: Words = SAME, pinned: Solution | None = None
-    ) -> Outcome:
+    def run(self, m: Mechanism, **options: Any) -> tuple[Solution | None, MechanismError | None]:
+        """Sweep over the case's outputs, unless said otherwise."""
+        options = {"times": self.grid} | options
+        return attempt(lambda: m.sweep(**options))
+
+    def look(self, m: Mechanism) -> Solution:
+        """Sweep at a few outputs. Raises MechanismError where that fails."""
+        return m.sweep(times=self.grid[:: max(1, len(self.grid) // 8)])
+
+    def compared(self, name: str, m: Mechanism, words: Words = SAME, **options: Any) -> Outcome:
         """Sweep ``m`` and compare."""
-        other, error = attempt(lambda: m.sweep(times=times))
+        other, error = self.run(m, **options)
         if error is not None:
             return self.refusal(name, error)
         assert other is not None
@@ -104,105 +110,23 @@ SWEEPS: Variations[Driven] = Variations()
 variation = SWEEPS.enter
 
 
-def random_pose(rng: np.random.Generator, size: float) -> Pose:
-    """Somewhere within some sizes, turned anyhow."""
-    x, y = rng.normal(scale=2 * size, size=2)
-    return float(x), float(y), float(rng.uniform(-3.1, 3.1))
-
-
-def random_frames(m: Mechanism, rng: np.random.Generator, size: float, world: bool, bodies: bool) -> dict[str, Pose]:
-    """New frames of bodies, and of ground if the world is to be carried off; turned where kinds allow it."""
-    free, out = turnable(m), {}
-    for name in m.bodies:
-        if bodies if name != "ground" else world:
-            x, y, angle = random_pose(rng, 0.3 * size if name != "ground" else size)
-            out[name] = (x, y, angle if name in free else 0.0)
-    return out
-
-
-def _size(case: Driven) -> float:
-    return 1.0 if case.first is None else case.first.packed.size
-
-
-@variation("world turned and moved")
-def _world(case: Driven) -> Outcome:
-    frames = random_frames(case.m, case.rng, _size(case), world=True, bodies=False)
-    return case.against_first("world turned and moved", seen_from(case.m, frames), case.grid, Words(frames))
-
-
-@variation("frames of bodies moved")
-def _frames(case: Driven) -> Outcome:
-    frames = random_frames(case.m, case.rng, _size(case), world=False, bodies=True)
-    return case.against_first("frames of bodies moved", seen_from(case.m, frames), case.grid, Words(frames))
-
-
-@variation("on a welded base")
-def _base(case: Driven) -> Outcome:
-    name = "on a welded base"
-    if "ground" not in turnable(case.m):
-        return Outcome(name, UNCLEAR, "a kind measures ground")
-    world = random_pose(case.rng, _size(case))
-    m = on_a_base(case.m, world, float(case.rng.choice([0.0, 1.0])))
-    return case.against_first(name, m, case.grid, Words({"ground": back(world)}))
-
-
-@variation("another order")
-def _order(case: Driven) -> Outcome:
-    return case.against_first("another order", shuffled(case.m, case.rng), case.grid, Words({}))
-
-
-@variation("mirror image")
-def _mirror(case: Driven) -> Outcome:
-    name, other = "mirror image", mirrored(case.m)
-    if other is None:
-        return Outcome(name, UNCLEAR, "a kind has a side of its own")
-    return case.against_first(name, other, case.grid, Words(mirrored=True))
-
-
-@variation("other units")
-def _units(case: Driven) -> Outcome:
-    name, (length, mass) = "other units", 10.0 ** case.rng.uniform(-2.0, 3.0, 2)
-    other = in_units(case.m, float(length), float(mass))
-    if other is None:
-        return Outcome(name, UNCLEAR, "numbers of a kind whose units are not known")
-    return case.against_first(name, other, case.grid, Words(length=float(length), mass=float(mass)))
-
-
-@variation("other names")
-def _names(case: Driven) -> Outcome:
-    name, other = "other names", renamed(case.m)
-    if other is None or case.first is None:
-        return Outcome(name, UNCLEAR, "no file could hold the model, or it was refused as built")
-    here, _ = attempt(lambda: case.m.sweep(times=case.grid))
-    there, error = attempt(lambda: other.sweep(times=case.grid))
-    if error is not None:
-        return case.refusal(name, error) if here is not None else Outcome(name, REFUSED, "with its own names, too")
-    assert here is not None
-    assert there is not None
-    differs = renamed_differs(here, there)
-    return Outcome(name, WRONG, "differs", differs) if differs else Outcome(name, AGREED)
-
-
-@variation("ends exchanged")
-def _ends(case: Driven) -> Outcome:
-    m = exchanged(case.m, case.rng)
-    return case.against_first("ends exchanged", m, case.grid, Words({}, turned_drivers(case.m, m)))
+SWEEPS.update(IN_OTHER_WORDS)
 
 
 @variation("all at once")
 def _all(case: Driven) -> Outcome:
-    frames = random_frames(case.m, case.rng, _size(case), world=True, bodies=True)
+    frames = random_frames(case.m, case.rng, size_of(case), world=True, bodies=True)
     m = shuffled(seen_from(case.m, frames), case.rng)
     per_turn = int(case.rng.choice(STEPS))
     times = np.linspace(0.0, case.subject.duration, max(1, round(per_turn * case.subject.turns)) + 1)
-    return case.against_first("all at once", m, times, Words(frames))
+    return case.compared("all at once", m, Words(frames), times=times)
 
 
 def _steps(per_turn: int) -> Callable[[Driven], Outcome]:
     def run(case: Driven) -> Outcome:
         name = f"{per_turn} outputs a turn"
         steps = max(1, round(per_turn * case.subject.turns))
-        return case.against_first(name, case.m, np.linspace(0.0, case.subject.duration, steps + 1))
+        return case.compared(name, case.m, times=np.linspace(0.0, case.subject.duration, steps + 1))
 
     return run
 
@@ -217,7 +141,7 @@ def _irregular(case: Driven) -> Outcome:
     share = float(10 ** case.rng.uniform(-2, 0))
     keep = case.rng.random(len(grid)) < share
     keep[[0, int(case.rng.integers(1, len(grid)))]] = True
-    return case.against_first("irregular outputs", case.m, grid[keep])
+    return case.compared("irregular outputs", case.m, times=grid[keep])
 
 
 @variation("one output alone")
@@ -227,7 +151,7 @@ def _one(case: Driven) -> Outcome:
         k = int(np.argmin(np.abs(case.first.t - at)))
         m = _from_here(case, k)
         return _compared_later(case, "one output alone", m, np.array([case.first.t[k]]))
-    return case.against_first("one output alone", case.m, np.array([0.0]))
+    return case.compared("one output alone", case.m, times=np.array([0.0]))
 
 
 def _from_here(case: Driven, k: int) -> Mechanism:
@@ -258,34 +182,7 @@ def _middle(case: Driven) -> Outcome:
     return _compared_later(case, "from the middle on", _from_here(case, k), case.grid[k:])
 
 
-@variation("saved and loaded")
-def _saved(case: Driven) -> Outcome:
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "model.json"
-        _, error = attempt(lambda: case.m.save(path))
-        if error is not None:
-            state = REFUSED if cannot_be_saved(case.m) else WRONG
-            return Outcome("saved and loaded", state, f"{type(error).__name__}, a function", str(error))
-        return case.against_first("saved and loaded", Mechanism.load(path), case.grid)
-
-
-@variation("changed and changed back")
-def _changed(case: Driven) -> Outcome:
-    m = duplicate(case.m)
-    times = case.grid[:: max(1, len(case.grid) // 8)]
-    if not there_and_back(m, case.rng, lambda: m.sweep(times=times)):
-        return Outcome("changed and changed back", UNCLEAR, "nothing to change")
-    return case.against_first("changed and changed back", m, case.grid)
-
-
-@variation("changed equals fresh")
-def _changed_to(case: Driven) -> Outcome:
-    return changed("changed equals fresh", case.m, case.rng)
-
-
-@variation("pickled and back")
-def _pickled(case: Driven) -> Outcome:
-    return pickled("pickled and back", case.first)
+SWEEPS.update(KEPT_AND_CHANGED)
 
 
 @variation("designs at once")
@@ -298,7 +195,7 @@ def _derivatives(case: Driven) -> Outcome:
     name = "derivatives of the moved machine"
     if case.first is None or case.doubtful or "jumps" in case.subject.traits:
         return Outcome(name, UNCLEAR, "refused as built, near a singular pose, or accelerations jump")
-    return beside_its_own(name, case.m, case.rng, random_pose(case.rng, _size(case)), case.first, is_free=False)
+    return beside_its_own(name, case.m, case.rng, random_pose(case.rng, size_of(case)), case.first, is_free=False)
 
 
 @variation("simulated with its drivers")

@@ -39,20 +39,18 @@ def model(
     speed: float = 1.0,
     masses: dict[str, tuple[float, tuple[float, float], float]] | None = None,
     turned: float = 0.0,
-    moved: tuple[float, float] = (0.0, 0.0),
     gravity: tuple[float, float] | None = (0.0, -9.81),
 ) -> Mechanism:
-    """The driven linkage on its open branch; the whole may be turned (rad) and moved (m)."""
+    """The driven linkage on its open branch; the whole may be turned (rad)."""
     ground, crank, coupler, rocker = lengths
     m = Mechanism("random", gravity=gravity)
     bars = dict(zip(NAMES, (m.bar(n, v) for n, v in zip(NAMES, (crank, coupler, rocker), strict=True)), strict=True))
     for name, (mass, com, inertia) in (masses or {}).items():
         m.set_mass(name, mass, com, inertia)
-    x, y = moved
-    m.revolute("A", m.ground.at(x, y), bars["crank"].start)
+    m.revolute("A", m.ground.at(0, 0), bars["crank"].start)
     m.revolute("B", bars["crank"].end, bars["coupler"].start)
     m.revolute("C", bars["coupler"].end, bars["rocker"].end)
-    pivot = x + ground * math.cos(turned), y + ground * math.sin(turned)
+    pivot = ground * math.cos(turned), ground * math.sin(turned)
     m.revolute("D", m.ground.at(*pivot), bars["rocker"].start)
     m.drive_angle("motor", bars["crank"], constant_rate(speed, turned))
     theta, swing = angles(lengths, np.zeros(1))

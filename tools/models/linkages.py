@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
-from mbsd import Body, Mechanism, constant_rate, harmonic
+from mbsd import STANDARD_GRAVITY, Body, Mechanism, Motion, constant_rate, harmonic
 
 TURN = constant_rate(2 * math.pi)
 JANSEN = {"a": 38.0, "b": 41.5, "c": 39.3, "d": 40.1, "e": 55.8, "f": 39.4, "g": 36.7, "h": 65.7, "i": 49.0, "j": 50.0}
@@ -15,17 +16,34 @@ JANSEN |= {"k": 61.9, "l": 7.8, "m": 15.0}
 
 
 def four_bar(
-    ground: float, crank: float, coupler: float, rocker: float, start: tuple[float, float] = (45.0, 100.0)
+    ground: float | tuple[float, float],
+    crank: float,
+    coupler: float,
+    rocker: float,
+    start: tuple[float, float] = (45.0, 100.0),
+    *,
+    masses: Sequence[float | None] = (None, None, None),
+    law: Motion | None = TURN,
+    at: float = 0.0,
+    traced: tuple[float, float] | None = None,
+    gravity: Sequence[float] | None = STANDARD_GRAVITY,
 ) -> Mechanism:
-    """Lengths in m; ``start`` are rough angles of coupler and rocker in degrees, the crank at 0."""
-    m = Mechanism("four")
-    a, b, c = m.bar("crank", crank), m.bar("coupler", coupler), m.bar("rocker", rocker)
+    """Return a four-bar A-B-C-D, with A at the origin and D at ``ground`` (m); ``traced``: point P of the coupler (m).
+
+    ``at`` and ``start`` are rough angles (degrees) of crank, coupler and rocker; without a ``law`` nothing drives it.
+    """
+    m = Mechanism("four_bar", gravity=gravity)
+    lengths = {"crank": crank, "coupler": coupler, "rocker": rocker}
+    a, b, c = (m.bar(name, length, mass) for (name, length), mass in zip(lengths.items(), masses, strict=True))
     m.revolute("A", m.ground.at(0, 0), a.start)
     m.revolute("B", a.end, b.start)
     m.revolute("C", b.end, c.end)
-    m.revolute("D", m.ground.at(ground, 0), c.start)
-    m.drive_angle("motor", a, TURN)
-    m.start_near(crank=0, coupler=start[0], rocker=start[1])
+    m.revolute("D", m.ground.at(*(ground if isinstance(ground, tuple) else (ground, 0))), c.start)
+    if law is not None:
+        m.drive_angle("motor", a, law)
+    if traced is not None:
+        m.trace("P", b.at(*traced))
+    m.start_near(crank=at, coupler=start[0], rocker=start[1])
     return m
 
 
@@ -102,16 +120,27 @@ def seen(origin: np.ndarray, towards: np.ndarray, point: np.ndarray) -> tuple[fl
     return float((point - origin) @ along), float((point - origin) @ np.array([-along[1], along[0]]))
 
 
-def slider_crank() -> Mechanism:
-    """An offset slider-crank with a rail on ground."""
-    m = Mechanism("slider")
-    crank, rod, slider = m.bar("crank", 0.03), m.bar("rod", 0.1), m.body("slider")
-    m.revolute("A", m.ground.at(0, 0), crank.start)
-    m.revolute("B", crank.end, rod.start)
-    m.revolute("C", rod.end, slider.origin)
-    m.prismatic("guide", m.ground.at(0, 0.01), slider.origin)
-    m.drive_angle("motor", crank, TURN)
-    m.start_near(crank=0, rod=5, slider=0)
+def slider_crank(
+    crank: float = 0.03,
+    rod: float = 0.1,
+    offset: float = 0.01,
+    *,
+    masses: Sequence[float | None] = (None, None, None),
+    law: Motion | None = TURN,
+    start: tuple[float, ...] = (0.0, 5.0, 0.0),
+    gravity: Sequence[float] | None = STANDARD_GRAVITY,
+) -> Mechanism:
+    """Return a slider-crank O-A-B on a guide ``offset`` (m) above its shaft; ``start`` are rough angles (degrees)."""
+    m = Mechanism("slider_crank", gravity=gravity)
+    bars = m.bar("crank", crank, masses[0]), m.bar("rod", rod, masses[1])
+    slider = m.body("slider", masses[2])
+    m.revolute("O", m.ground.at(0, 0), bars[0].start)
+    m.revolute("A", bars[0].end, bars[1].start)
+    m.revolute("B", bars[1].end, slider.origin)
+    m.prismatic("guide", m.ground.at(0, offset), slider.origin)
+    if law is not None:
+        m.drive_angle("motor", bars[0], law)
+    m.start_near(**dict(zip(("crank", "rod", "slider"), start, strict=False)))
     return m
 
 

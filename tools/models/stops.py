@@ -7,7 +7,7 @@ import math
 from mbsd import Mechanism, curve
 
 
-def barrier(stops: bool = False) -> Mechanism:
+def barrier(stops: bool = False, damping: float = 0.4) -> Mechanism:
     m = Mechanism("barrier")
     a, b, c = m.bar("crank", 0.1, mass=0.3), m.bar("coupler", 0.38, mass=0.5), m.bar("rocker", 0.3, mass=2.0)
     m.revolute("A", m.ground.at(0, 0), a.start)
@@ -15,7 +15,7 @@ def barrier(stops: bool = False) -> Mechanism:
     m.revolute("C", b.end, c.end)
     pivot = m.revolute("D", m.ground.at(0.4, 0.02), c.start)
     m.motor("motor", m.ground, a, curve([-10, 0, 20, 40], [6.0, 5.0, 2.0, 0.0]))
-    m.torsion_spring("spring", m.ground, c, 3.0, 0.4, free_angle=1.8)
+    m.torsion_spring("spring", m.ground, c, 3.0, damping, free_angle=1.8)
     if stops:
         m.stop("end", pivot, lower=math.radians(85), upper=math.radians(125), restitution=0.3)
     m.start_near(crank=0, coupler=45, rocker=90)

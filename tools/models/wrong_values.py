@@ -30,7 +30,7 @@ NEVER: dict[str, Callable[[], Any]] = {
     "foreign marker": lambda: Mechanism("other").bar("q", 1.0).end,
     "array": lambda: np.zeros((2, 2, 2)),
 }
-"""What no argument takes, but for text where the signature says so."""
+"""Values that no argument takes, but for text where the signature says so."""
 ODD: dict[str, Callable[[], Any]] = {
     "none": lambda: None,
     "true": lambda: True,
@@ -47,7 +47,7 @@ ODD: dict[str, Callable[[], Any]] = {
     "numpy": lambda: np.float32(0.3),
     "numpy bool": lambda: np.True_,
 }
-"""What some arguments take: no traceback, and what is accepted can be solved or is refused then."""
+"""Values that some arguments take: no traceback, and an accepted one can be solved or is refused then."""
 
 
 class _Hostile:

@@ -27,7 +27,7 @@ class Subject:
     turn: float | None = None
     """Seconds of one turn or swing; None: the whole duration."""
     truth: Callable[[Solution], list[str]] | None = None
-    """What a solution gets wrong, judged without the solver."""
+    """Function that lists the errors of a solution, judged without the solver."""
     possible: bool | None = None
     """True if the motion exists; None where that is not known, as within rounding of a change point."""
     distance: float = 1.0

@@ -9,7 +9,7 @@ from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 LOADED = {("script", "src"), ("img", "src"), ("source", "srcset"), ("iframe", "src"), ("link", "href")}
-"""What a browser fetches by itself."""
+"""Elements that a browser fetches by itself."""
 KEPT_LINKS = ("canonical", "prev", "next")
 """Values of ``rel`` that fetch nothing."""
 IN_STYLE = re.compile(r"url\([\"']?(https?:|//)|@import")

@@ -38,12 +38,13 @@ CONSTANTS = "mbsd.model.body"
 DOORS = {
     "cams.md": ("mbsd.cams", "Cams"),
     "extend.md": ("mbsd.extend", "Kinds of your own"),
+    "extend_derivatives.md": ("mbsd.extend.derivatives", "Derivatives in coordinates of your own"),
     "extend_integrators.md": ("mbsd.extend.integrators", "Integrators of your own"),
     "testing.md": ("mbsd.testing", "Tests of your own kinds"),
 }
 """Modules beside ``mbsd`` whose names users import."""
 MACHINES = "machines.md"
-"""What the documents import from ``mbsd.machines``, which has no door of its own."""
+"""Page of names that the documents import from ``mbsd.machines``, which has no door of its own."""
 PAGES = ("README.md", *ROOMS, *DOORS, MACHINES)
 IMPORTED = re.compile(r"^from (mbsd\.machines[\w.]*) import (\([^)]*\)|[^\n]+)", re.MULTILINE)
 
@@ -257,7 +258,7 @@ GIVEN_BACK = (
 )
 """Rooms whose classes a call gives back: nobody makes one, so the table of their fields is enough."""
 CALLED = {"Mechanism": "m.", "Solution": "sol."}
-"""What the documents call one."""
+"""Names that the documents give to an instance."""
 
 
 def entry(name: str, value: Any, alone: bool = False) -> str:

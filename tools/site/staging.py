@@ -160,7 +160,7 @@ PICTURES = (".svg", ".png", ".jpg", ".gif", ".webp")
 ASSETS = Path(__file__).with_name("theme") / "assets"
 LINK = re.compile(r"(?<=\]\()([^)#\s]+)")
 FENCE = re.compile(r"(^```.*?^```$|`[^`\n]+`)", re.MULTILINE | re.DOTALL)
-"""What is no Markdown: blocks of code, and code in a line."""
+"""Parts that are no Markdown: blocks of code, and code in a line."""
 
 
 def documents(root: Path) -> list[Path]:

@@ -23,7 +23,7 @@ BESIDE = ("pyproject.toml", "setup.py", "MANIFEST.in", "README.md", "LICENSE", "
 EARLIEST = 315532800
 """s: 1980, before which zip files have no times."""
 ROOMS = ("mechanisms", "render", "shared", "studio")
-"""What the wheel brings besides the solver (setup.py)."""
+"""Rooms that the wheel brings besides the solver (setup.py)."""
 
 
 def build(root: Path, out: Path) -> list[Path]:

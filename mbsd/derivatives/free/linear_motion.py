@@ -1,6 +1,9 @@
-"""Linear equations of motion along nodes, s'' = A(t) (s, s') + B(t), by collocation of y = (s, s').
+"""Linear equations of motion along nodes by collocation of y = (q, v), changes of n coordinates and k velocities.
 
-Lobatto IIIA with nine stages: a step has nodes at its ends, its middle, and between. At ends of steps it is of order
+    q' = C q + D v + e       v' = A (q, v) + b            in the plane q' = v, with n = k = f changes s of coordinates
+
+Lobatto IIIA with nine stages: a step has nodes at its ends, its middle, and between. Coordinates at its nodes follow
+from velocities there, so that a step is solved for velocities alone. At ends of steps it is of order
 16; inside, where the polynomial of y' is integrated, of tenth. Legendre's coefficients of y' on the nodes tell the
 errors: where they fall as those of a smooth motion do, by the same factor from the fourth to the eighth as from there
 on, the ninth is what the step leaves out inside, the fourteenth at its end. Both are parts of the largest y so far:
@@ -10,12 +13,14 @@ what errs while y is small grows with it. Source: Hairer, Wanner, Solving ODEs I
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
 from scipy.special import roots_jacobi
 
-from mbsd.compiling.jit import internal, kernel
+from mbsd.compiling.alternatives import alternatives
+from mbsd.compiling.jit import inlined, internal, kernel
 from mbsd.equations.products import eliminate
 
 NODES = 8
@@ -49,13 +54,13 @@ class Carried:
     t: np.ndarray
     """(8 d + 1,) nodes (s)."""
     y: np.ndarray
-    """(8 d + 1, k, c), k = 2 f, as rates, y'."""
+    """(8 d + 1, n + k, c), as rates, y'."""
     rates: np.ndarray
     errors: np.ndarray
     """(d, 2) what each step adds, and what it leaves out inside alone, as parts of the largest y so far."""
 
     def at(self, times: np.ndarray) -> np.ndarray:
-        """(R, k, c) y at times (R,) (s)."""
+        """(R, n + k, c) y at times (R,) (s)."""
         if len(times) == 1 and times[0] == self.t[-1]:
             return self.y[-1:]
         edges = self.t[::NODES]
@@ -74,17 +79,50 @@ class Carried:
         return np.where(inside[:, None], self.errors, self.errors * [1.0, 0.0])
 
 
-def carried(t: np.ndarray, a: np.ndarray, b: np.ndarray, begun: np.ndarray, slight: np.ndarray) -> Carried:
-    """y at nodes t (8 d + 1,) (s) from ``begun`` (2 f, c), and beyond.
+class SameRates(NamedTuple):
+    """q' = v, as in the plane."""
 
-    a (8 d + 1, f, 2 f), b (8 d + 1, f, c). Errors are parts of the largest y so far, or of ``slight`` (2 f, c)
+    none: Any
+    """(0,) nothing."""
+
+
+SAME_RATES = SameRates(np.zeros(0))
+
+
+class OwnRates(NamedTuple):
+    """q' = C q + D v + e at T nodes."""
+
+    matrix: Any
+    """(T, n, n + k) C and D."""
+    right: Any
+    """(T, n, c) e."""
+    gain: Any
+    """(8 n, 8 k + c) scratch: q at nodes 1 .. 8 of a step by v there, and what it is without v."""
+    square: Any
+    """(8 n, 8 n) scratch."""
+
+
+def own_rates(matrix: np.ndarray, right: np.ndarray) -> OwnRates:
+    """Return q' = C q + D v + e with scratch; matrix (T, n, n + k) C and D, right (T, n, c) e."""
+    n, k, c = matrix.shape[1], matrix.shape[2] - matrix.shape[1], right.shape[2]
+    gain, square = np.zeros((NODES * n, NODES * k + c)), np.zeros((NODES * n, NODES * n))
+    return OwnRates(np.ascontiguousarray(matrix), np.ascontiguousarray(right), gain, square)
+
+
+def carried(
+    t: np.ndarray, a: np.ndarray, b: np.ndarray, begun: np.ndarray, slight: np.ndarray,
+    kinematics: SameRates | OwnRates = SAME_RATES,
+) -> Carried:  # fmt: skip
+    """Return y at nodes t (8 d + 1,) (s) from ``begun`` (n + k, c), and beyond.
+
+    a (8 d + 1, k, n + k), b (8 d + 1, k, c). Errors are parts of the largest y so far, or of ``slight`` (n + k, c)
     if that is more.
     """
-    f, c = b.shape[1:]
-    out, rates = np.zeros((2, len(t), 2 * f, c))
+    k, c = b.shape[1:]
+    out, rates = np.zeros((2, len(t), len(begun), c))
     out[0] = begun
-    matrix, side = np.zeros((NODES * f, NODES * f)), np.zeros((NODES * f, c))
-    march(t, np.ascontiguousarray(a), np.ascontiguousarray(b), WEIGHTS, matrix, side, out, rates)
+    matrix, side = np.zeros((NODES * k, NODES * k)), np.zeros((NODES * k, c))
+    march(kinematics, t, np.ascontiguousarray(a), np.ascontiguousarray(b), WEIGHTS, matrix, side, out, rates)
     largest = np.maximum.accumulate(np.abs(out), axis=0)[NODES::NODES]
     per = 1.0 / np.maximum(largest, slight)
     errors = np.zeros(((len(t) - 1) // NODES, 2))
@@ -97,82 +135,197 @@ def _nodes_of(steps: np.ndarray) -> np.ndarray:
     return NODES * steps[:, None] + np.arange(NODES + 1)
 
 
+# -- coordinates by velocities, where q' = v and in general ------------------------------------------------------------
+
+
+@inlined
+def _same_rates(kinematics, at, s, f, out):
+    for k in range(f):
+        for i in range(s.shape[1]):
+            out[k, i] = s[f + k, i]
+
+
+@inlined
+def _own_rates(kinematics, at, s, f, out):
+    for m in range(kinematics.right.shape[1]):
+        for i in range(s.shape[1]):
+            out[m, i] = kinematics.right[at, m, i]
+        for j in range(s.shape[0]):
+            factor = kinematics.matrix[at, m, j]
+            for i in range(s.shape[1]):
+                out[m, i] += factor * s[j, i]
+
+
+@inlined
+def _no_gain(kinematics, h, first, weights, s, rate):
+    pass
+
+
 @internal
-def rate_at(a, b, s, out):
-    """Fill the lower half of out (2 f, c) with s'' of s (2 f, c) at one node, the upper with s'."""
+def _fill_gain(kinematics, h, first, weights, s, rate):
+    matrix = kinematics.matrix
+    right = kinematics.right
+    gain = kinematics.gain
+    square = kinematics.square
+    n = right.shape[1]
+    k = matrix.shape[2] - n
+    for i in range(NODES):
+        for m in range(n):
+            row = i * n + m
+            for c in range(right.shape[2]):
+                gain[row, NODES * k + c] = s[m, c] + h * weights[i, 0] * rate[m, c]
+            for j in range(NODES):
+                weight = h * weights[i, 1 + j]
+                for g in range(n):
+                    square[row, j * n + g] = -weight * matrix[first + 1 + j, m, g]
+                for g in range(k):
+                    gain[row, j * k + g] = weight * matrix[first + 1 + j, m, n + g]
+                for c in range(right.shape[2]):
+                    gain[row, NODES * k + c] += weight * right[first + 1 + j, m, c]
+            square[row, row] += 1.0
+    eliminate(square, gain)
+
+
+@inlined
+def _integrated(kinematics, h, weights, a, i, n, j, k, g):
+    return h * h * weights[i, 1 + n] * weights[n, 1 + j] * a[1 + n, k, g]
+
+
+@inlined
+def _gained(kinematics, h, weights, a, i, n, j, k, g):
+    count = kinematics.right.shape[1]
+    total = 0.0
+    for m in range(count):
+        total += a[1 + n, k, m] * kinematics.gain[n * count + m, j * a.shape[1] + g]
+    return h * weights[i, 1 + n] * total
+
+
+@inlined
+def _start(kinematics, h, weights, s, f, n, g, c):
+    return s[g, c] + h * weights[n, 0] * s[f + g, c]
+
+
+@inlined
+def _own_start(kinematics, h, weights, s, f, n, g, c):
+    return kinematics.gain[n * f + g, kinematics.gain.shape[1] - s.shape[1] + c]
+
+
+@inlined
+def _integrate(kinematics, h, weights, i, s, f, side, node):
+    for k in range(f):
+        for c in range(side.shape[1]):
+            node[k, c] = s[k, c] + h * weights[i, 0] * s[f + k, c]
+        for n in range(NODES):
+            weight = h * weights[i, 1 + n]
+            for c in range(side.shape[1]):
+                node[k, c] += weight * side[n * f + k, c]
+
+
+@inlined
+def _gain_coordinates(kinematics, h, weights, i, s, f, side, node):
+    gain = kinematics.gain
+    count = kinematics.right.shape[1]
+    for m in range(count):
+        row = gain[i * count + m]
+        for c in range(side.shape[1]):
+            node[m, c] = row[side.shape[0] + c]
+        for g in range(side.shape[0]):
+            for c in range(side.shape[1]):
+                node[m, c] += row[g] * side[g, c]
+
+
+coordinate_rates = alternatives({SameRates: _same_rates, OwnRates: _own_rates})
+"""(kinematics, at, s, f, out): fill the first rows of out (n + k, c) with q' at node ``at``, where y is s."""
+fill_gain = alternatives({SameRates: _no_gain, OwnRates: _fill_gain})
+"""(kinematics, h, first, weights, s, rate): fill the gain of a step h from node ``first``, where y is s and y' rate."""
+gained = alternatives({SameRates: _integrated, OwnRates: _gained})
+"""(kinematics, h, weights, a, i, n, j, k, g): how v_k at node i changes with v_g at node j by coordinates at node n."""
+start = alternatives({SameRates: _start, OwnRates: _own_start})
+"""(kinematics, h, weights, s, f, n, g, c): coordinate g of f at node n without velocities at nodes 1 .. 8."""
+fill_coordinates = alternatives({SameRates: _integrate, OwnRates: _gain_coordinates})
+"""(kinematics, h, weights, i, s, f, side, node): fill the first rows of node (n + k, c) i by v at nodes (8 k, c)."""
+
+
+# -- steps -------------------------------------------------------------------------------------------------------------
+
+
+@internal
+def rate_at(kinematics, at, a, b, s, out):
+    """Fill out (n + k, c) with y' at node ``at``, where y is s (n + k, c); a (k, n + k), b (k, c)."""
     f = b.shape[0]
+    n = a.shape[1] - f
+    coordinate_rates(kinematics, at, s, f, out)
     for k in range(f):
         for i in range(b.shape[1]):
-            out[k, i] = s[f + k, i]
-            out[f + k, i] = b[k, i]
-        for j in range(2 * f):
+            out[n + k, i] = b[k, i]
+        for j in range(n + f):
             factor = a[k, j]
             for i in range(b.shape[1]):
-                out[f + k, i] += factor * s[j, i]
+                out[n + k, i] += factor * s[j, i]
 
 
 @internal
-def fill_matrix(h, a, weights, matrix):
-    """Fill matrix (8 f, 8 f) of s' at nodes 1 .. 8 of a step h; a (9, f, 2 f)."""
+def fill_matrix(kinematics, h, a, weights, matrix):
+    """Fill matrix (8 k, 8 k) of v at nodes 1 .. 8 of a step h; a (9, k, n + k)."""
     f = a.shape[1]
+    count = a.shape[2] - f
     for i in range(NODES):
         for j in range(NODES):
             for k in range(f):
                 row = matrix[i * f + k]
                 for g in range(f):
-                    value = h * weights[i, 1 + j] * a[1 + j, k, f + g]
+                    value = h * weights[i, 1 + j] * a[1 + j, k, count + g]
                     for n in range(NODES):
-                        value += h * h * weights[i, 1 + n] * weights[n, 1 + j] * a[1 + n, k, g]
+                        value += gained(kinematics, h, weights, a, i, n, j, k, g)
                     row[j * f + g] = -value
     for r in range(NODES * f):
         matrix[r, r] += 1.0
 
 
 @internal
-def fill_side(h, a, b, weights, s, first, side):
-    """Fill side (8 f, c) from s (2 f, c) and its rate ``first`` at node 0; a (9, f, 2 f), b (9, f, c)."""
+def fill_side(kinematics, h, a, b, weights, s, first, side):
+    """Fill side (8 k, c) from s (n + k, c) and its rate ``first`` at node 0; a (9, k, n + k), b (9, k, c)."""
     f = b.shape[1]
     count = b.shape[2]
+    coordinates = a.shape[2] - f
     for i in range(NODES):
         for k in range(f):
             row = side[i * f + k]
             for c in range(count):
-                row[c] = s[f + k, c] + h * weights[i, 0] * first[f + k, c]
+                row[c] = s[coordinates + k, c] + h * weights[i, 0] * first[coordinates + k, c]
             for n in range(NODES):
                 weight = h * weights[i, 1 + n]
                 for c in range(count):
                     row[c] += weight * b[1 + n, k, c]
-                for g in range(f):
+                for g in range(coordinates):
                     factor = weight * a[1 + n, k, g]
                     for c in range(count):
-                        row[c] += factor * (s[g, c] + h * weights[n, 0] * s[f + g, c])
+                        row[c] += factor * start(kinematics, h, weights, s, coordinates, n, g, c)
 
 
 @kernel
-def march(t, a, b, weights, matrix, side, out, rates):
-    """Fill out and rates (8 d + 1, 2 f, c) from out[0], by ``weights`` (8, 9); matrix and side are scratch.
+def march(kinematics, t, a, b, weights, matrix, side, out, rates):
+    """Fill out and rates (8 d + 1, n + k, c) from out[0], by ``weights`` (8, 9); matrix and side are scratch.
 
-    a (8 d + 1, f, 2 f), b (8 d + 1, f, c). Each step is solved for s' at its nodes, of which s is the integral.
+    a (8 d + 1, k, n + k), b (8 d + 1, k, c). Each step is solved for v at its nodes, of which q follows.
     """
     f = b.shape[1]
+    n = a.shape[2] - f
     for first in range(0, t.shape[0] - 1, NODES):
         h = t[first + NODES] - t[first]
         own = slice(first, first + NODES + 1)
-        rate_at(a[first], b[first], out[first], rates[first])
-        fill_matrix(h, a[own], weights, matrix)
-        fill_side(h, a[own], b[own], weights, out[first], rates[first], side)
+        rate_at(kinematics, first, a[first], b[first], out[first], rates[first])
+        fill_gain(kinematics, h, first, weights, out[first], rates[first])
+        fill_matrix(kinematics, h, a[own], weights, matrix)
+        fill_side(kinematics, h, a[own], b[own], weights, out[first], rates[first], side)
         eliminate(matrix, side)
         for i in range(NODES):
             node = out[first + 1 + i]
             for k in range(f):
                 for c in range(side.shape[1]):
-                    node[f + k, c] = side[i * f + k, c]
-                    node[k, c] = out[first, k, c] + h * weights[i, 0] * out[first, f + k, c]
-                for n in range(NODES):
-                    weight = h * weights[i, 1 + n]
-                    for c in range(side.shape[1]):
-                        node[k, c] += weight * side[n * f + k, c]
-            rate_at(a[first + 1 + i], b[first + 1 + i], node, rates[first + 1 + i])
+                    node[n + k, c] = side[i * f + k, c]
+            fill_coordinates(kinematics, h, weights, i, out[first], f, side, node)
+            rate_at(kinematics, first + 1 + i, a[first + 1 + i], b[first + 1 + i], node, rates[first + 1 + i])
 
 
 @kernel

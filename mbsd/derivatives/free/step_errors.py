@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TypeVar
 
 import numpy as np
 
@@ -26,13 +27,15 @@ MOST_STEPS = 20_000
 
 Finish = Callable[[], Tangents | None]
 """Evaluates tangents at the outputs of which they are asked; None where that gave the slopes themselves."""
-Way = Callable[[np.ndarray], tuple[np.ndarray, Finish]]
-"""Gives the errors (d, 2) of steps between edges, and what finishes them."""
+Result = TypeVar("Result")
 
 
-def refined_to_error(way: Way, edges: np.ndarray, kinked: bool, name: str) -> tuple[Tangents | None, float]:
-    """Tangents of the mechanism ``name`` by one way, beginning with steps between ``edges`` (k,) (s), and their error.
+def refined_to_error(
+    way: Callable[[np.ndarray], tuple[np.ndarray, Callable[[], Result]]], edges: np.ndarray, kinked: bool, name: str
+) -> tuple[Result, float]:
+    """Return tangents of ``name`` by one way, beginning with steps between ``edges`` (k,) (s), and their error.
 
+    ``way`` gives the errors (d, 2) of steps between edges, and what finishes them.
     ``kinked`` says that contacts by penalty are among the forces. The error is a part of the largest tangent.
     """
     before = error = 0.0

@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 from mbsd.compiling.jit import internal, kernel
 from mbsd.dynamics.independent.equations import accelerate, evaluate, place_all, settle
 from mbsd.equations.loads import apply_elements
-from mbsd.kinematics.groups.carried import BASE, NEAR, THETA
+from mbsd.kinematics.groups.carried import BASE, NEAR, THETA, X, Y
+from mbsd.kinematics.groups.cases import angle_of
 
 FIRST = 3
 """Entries of a state before its coordinates."""
@@ -62,6 +63,20 @@ def rates_beside(dyn, scratch, t, states, held, sensitivity, out):
     return states.shape[0]
 
 
+@internal
+def stand_beside(dyn, scratch, t, q, z):
+    """Predict poses from q (3 nb,), whose coordinates are z (3 + f,), at t (s)."""
+    for b in range(scratch.base.shape[0]):
+        for c in range(scratch.base.shape[1]):
+            scratch.base[b, c] = 0.0
+        scratch.base[b, THETA] = q[3 * b + 2]
+    last = scratch.coordinate.shape[0] - 1
+    for j in range(last + 1):
+        scratch.coordinate[j, BASE] = z[FIRST + j] if j < z.shape[0] - FIRST else t
+    for e in range(dyn.number.shape[0]):
+        dyn.number[e, NEAR] = 1.0
+
+
 @kernel
 def motions_beside(dyn, scratch, t, q, z, states, forces, y, a):
     """Fill y (R, 2, 3 nb), and with ``forces`` a (R, 3 nb), with motions of bodies at states (R, 2, 3 + f) and t (R,).
@@ -70,20 +85,35 @@ def motions_beside(dyn, scratch, t, q, z, states, forces, y, a):
     had a clear pose.
     """
     rates = scratch.stages[0, 1]
-    last = scratch.coordinate.shape[0] - 1
     for k in range(states.shape[0]):
-        for b in range(scratch.base.shape[0]):
-            for c in range(scratch.base.shape[1]):
-                scratch.base[b, c] = 0.0
-            scratch.base[b, THETA] = q[k, 3 * b + 2]
-        for j in range(last + 1):
-            scratch.coordinate[j, BASE] = z[k, FIRST + j] if j < z.shape[1] - FIRST else t[k]
-        for e in range(dyn.number.shape[0]):
-            dyn.number[e, NEAR] = 1.0
+        stand_beside(dyn, scratch, t[k], q[k], z[k])
         power = evaluate(dyn, scratch, t[k], states[k], rates, forces)
         if power != power:
             return k
         place_all(scratch, rates, forces, y[k], a[k])
+    return states.shape[0]
+
+
+@kernel
+def bends_beside(dyn, scratch, t, q, z, states, scale, far, out):
+    """Fill out (R, f) with z'' at states (R, 2, 3 + f) and t (R,) near poses q (R, 3 nb), as motions_beside.
+
+    far (1,) takes how far bodies go from there at most, in sizes ``scale`` (3 nb,).
+    """
+    rates = scratch.stages[0, 1]
+    body = scratch.body
+    for k in range(states.shape[0]):
+        stand_beside(dyn, scratch, t[k], q[k], z[k])
+        power = evaluate(dyn, scratch, t[k], states[k], rates, True)
+        if power != power:
+            return k
+        for i in range(out.shape[1]):
+            out[k, i] = rates[FIRST + i]
+        for b in range(1, body.shape[0]):
+            c = 3 * b
+            angle = angle_of(body, scratch.base, scratch.coordinate, b)
+            far[0] = max(far[0], abs(body[b, X] - q[k, c]) / scale[c], abs(body[b, Y] - q[k, c + 1]) / scale[c + 1])
+            far[0] = max(far[0], abs(angle - q[k, c + 2]) / scale[c + 2])
     return states.shape[0]
 
 

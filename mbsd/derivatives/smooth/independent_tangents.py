@@ -18,7 +18,14 @@ from mbsd.derivatives.free.linear_motion import Carried, carried
 from mbsd.derivatives.numbers.terms import Along, Terms
 from mbsd.derivatives.numbers.variants import ALLOWED, FAR, TINY, Variants, step_of
 from mbsd.derivatives.smooth.between_looks import between_looks
-from mbsd.derivatives.smooth.held_motion import FIRST, Held, motions_beside, rates_beside, slopes_of_forces
+from mbsd.derivatives.smooth.held_motion import (
+    FIRST,
+    Held,
+    bends_beside,
+    motions_beside,
+    rates_beside,
+    slopes_of_forces,
+)
 from mbsd.derivatives.smooth.sides import BothSides, Sides, forces_beside
 from mbsd.derivatives.smooth.smooth_motion import CLOSE, NotSmooth
 from mbsd.dynamics.independent.arrays import Embedding
@@ -63,7 +70,8 @@ class IndependentTangents:
         self.share = 0.0
         """How far bodies go at most (sizes, rad), for a change of a coordinate by its size."""
         self.f = len(made.coordinates)
-        self.scale = ready.packed.column_scale()
+        self.scale = np.concatenate([np.ones(3), ready.packed.column_scale()])
+        """(3 nb,) sizes of coordinates."""
         self.scratch = embedding_scratch(ready, made, 1, ready.initial.q)
         width = len(ready.initial.q)
         self.basis = np.zeros((self.f, width))
@@ -100,9 +108,8 @@ class IndependentTangents:
         if light:
             right[:, :, light] = self._slopes_of_forces(t, held, rates).transpose(1, 2, 0)
         here = t, np.ascontiguousarray(held.pose[:, 0]), states[:, 0, 0].copy(), states[:, 0].copy()
-        room = np.zeros_like(held.pose), np.zeros((count, held.pose.shape[2]))
         for p in self.every.keys() - {*light}:
-            right[:, :, p] = self._slope(p, here, rates[:, 0], room)
+            right[:, :, p] = self._slope(p, here, rates[:, 0])
         y = np.concatenate([self.basis @ self.both.begun(part).T for part in range(2)])
         fastest = float(np.abs(speed).max(initial=0.0)) or 1.0
         slight = slight_changes(f, fastest, np.array(self.both.sizes))
@@ -196,23 +203,28 @@ class IndependentTangents:
         stretch = Stretch(along, compact, rows, [], everywhere, everywhere)
         return at_rows(terms, stretch, variants, self.basis[:, 3:], line.at(along.t))
 
-    def _slope(self, p: int, here: States, rates: np.ndarray, room: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
-        """(T, f) how z'' changes with number p at held states, where it is ``rates`` (T, f); ``room`` is scratch."""
-        last, self.alone[p] = self._held_side(p, -1, here, *room)
+    def _slope(self, p: int, here: States, rates: np.ndarray) -> np.ndarray:
+        """(T, f) how z'' changes with number p at held states, where it is ``rates`` (T, f)."""
+        last, self.alone[p] = self._held_side(p, -1, here)
         if self.alone[p] > ALLOWED * FAR:
             self.both.set_steps({p: TINY * FAR / float(self.alone[p])})
-            last, self.alone[p] = self._held_side(p, -1, here, *room)
+            last, self.alone[p] = self._held_side(p, -1, here)
         sides, out = self.every[p], last
         out *= sides.weights[-1]
         for k, weight in enumerate(sides.weights[:-1].tolist()):
-            out += weight * (self._held_side(p, k, here, *room)[0] if sides.away[k] else rates)
+            out += weight * (self._held_side(p, k, here)[0] if sides.away[k] else rates)
         return out
 
-    def _held_side(self, p: int, k: int, here: States, poses: np.ndarray, a: np.ndarray) -> tuple[np.ndarray, float]:
+    def _held_side(self, p: int, k: int, here: States) -> tuple[np.ndarray, float]:
         """(T, f) z'' on side k of number p at held states, and how far bodies go there (sizes, rad)."""
-        sides = self.every[p]
-        self._move(sides.arrays[k], sides.mass[k], sides.moment[k], here, True, poses, a)
-        return a @ self.basis.T, float(np.abs((poses[:, 0, 3:] - here[1][:, 3:]) / self.scale).max(initial=0.0))
+        sides, (t, *_, states) = self.every[p], here
+        arrays, out, far = sides.arrays[k], np.zeros((len(t), self.f)), np.zeros(1)
+        self._begin(arrays, sides.mass[k], sides.moment[k], states[0], float(t[0]))
+        clear = bends_beside(arrays, self.scratch, *here, self.scale, far, out)
+        self.ready.packed.specials.check()
+        if clear < len(t):
+            raise NotSmooth
+        return out, float(far[0])
 
     def _move(
         self, arrays: Embedding, mass: np.ndarray, moment: np.ndarray, here: States, forces: bool, poses: np.ndarray,

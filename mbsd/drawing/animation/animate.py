@@ -1,4 +1,4 @@
-"""``sol.animate(path)``: what is asked for is checked, drawn picture by picture and handed to the encoder."""
+"""``sol.animate(path)``: checks a request, draws it picture by picture and encodes it."""
 
 from __future__ import annotations
 
@@ -39,7 +39,10 @@ def animate(
     progress: Callable[[int, int], object] | None = None,
     inks: Mapping[str, str] | None = None,
 ) -> Animation:
-    """See :meth:`mbsd.results.solution.Solution.animate`; ``inks``: ``#rrggbb`` of bodies instead of those by role."""
+    """Write the animation of :meth:`mbsd.results.solution.Solution.animate`.
+
+    ``inks``: ``#rrggbb`` of bodies instead of those by role.
+    """
     name = f"{sol.mechanism.name}: animate"
     target, suffix = _target(name, path)
     groups = _groups(name, show)

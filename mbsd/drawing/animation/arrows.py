@@ -1,4 +1,4 @@
-"""Arrows and arcs of a clip: velocities, accelerations, forces and reactions, and the scale at which they are drawn.
+"""Arrows and arcs of a clip: velocities, accelerations, forces and reactions, and their scale.
 
 One scale holds for the whole clip and for all quantities of one unit in a picture.
 """
@@ -99,7 +99,10 @@ SAME = 1e-9
 
 
 def motion_arrows(m: Model, tracks: Tracks, quantity: str) -> list[Arrow | Arc]:
-    """Return arrows of ``velocities`` or ``accelerations``; an arc for a body that turns about a fixed point alone."""
+    """Return arrows of ``velocities`` or ``accelerations``.
+
+    A body that turns about a fixed point alone has an arc.
+    """
     out: list[Arrow | Arc] = []
     shown: list[Moving] = []
     points = {name: [moving_marker(tracks.views, marker) for marker in _markers(m, name)] for name in m.bodies}
@@ -121,7 +124,10 @@ def motion_arrows(m: Model, tracks: Tracks, quantity: str) -> list[Arrow | Arc]:
 
 
 def _markers(m: Model, name: str) -> list[Marker]:
-    """Return markers of joints and traced points; if these are one place, the centre of mass or a bar's end too."""
+    """Return markers of joints and traced points.
+
+    If these are one place, the centre of mass or a bar's end comes too.
+    """
     joints = [*m.joints.values(), *(contact for contact in m.contacts.values() if contact.kind.drawn_as == "rope")]
     out = [marker for joint in joints for marker in (joint.j, joint.i) if marker.body.name == name]
     out += [marker for marker in m.traces.values() if marker.body.name == name]

@@ -1,4 +1,4 @@
-"""Bars beside the machine: kinetic and potential energy and their sum; the power of each driver and force."""
+"""Bars beside the mechanism: kinetic, potential and total energy; power of each driver and force."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A canvas that hands what is drawn straight to the Agg renderer, in pixels, sorted by order; arrows and arcs.
+"""A canvas on the Agg renderer, in pixels and sorted by order, with arrows and arcs.
 
 Artists of matplotlib cost more than the strokes they make: an animation draws some hundred strokes a picture.
 """
@@ -20,7 +20,7 @@ Colour = tuple[float, float, float, float]
 HALO = "#ffffff"
 """Round arrows, on light paper."""
 BEHIND = 0.72
-"""How far the second point of a head lies behind the first, in its length."""
+"""Distance of a head's second point behind the first, in its length."""
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,10 @@ class Brush(Canvas):
         self._add(pixels, False, colour, None, width, order)
 
     def paint(self, renderer: Any, others: Sequence[Mark] = (), shift: tuple[float, float] = (0.0, 0.0)) -> None:
-        """Draw all, lower orders first, those of one order as they came; ``others`` too, moved by ``shift`` pixels."""
+        """Draw all, lower orders first, those of one order as they came.
+
+        ``others`` are drawn too, moved by ``shift`` pixels.
+        """
         from matplotlib.transforms import Affine2D
 
         still, moved = Affine2D(), Affine2D().translate(*shift)
@@ -225,7 +228,10 @@ def _outlines(length: float, point: float, half: float, head: Head) -> list[np.n
 
 
 def arc(brush: Brush, centre: np.ndarray, radius: float, sweep: float, colour: str, size: float) -> None:
-    """Draw an arc of ``sweep`` rad about ``centre`` (pixels) from below, with a head; positive counter-clockwise."""
+    """Draw an arc of ``sweep`` rad about ``centre`` (pixels) from below, with a head.
+
+    Counter-clockwise is positive.
+    """
     if abs(sweep) * radius < 1.5 * size:
         return
     head = min(4.2 * size, 0.7 * abs(sweep) * radius)

@@ -50,7 +50,9 @@ class Clip:
 
 
 def clip_of(sol: Solution, rate: float | None, fps: float) -> Clip:
-    """Return the clip of a whole solution. ``rate`` None: real time, or a round part of it if too short or long.
+    """Return the clip of a whole solution.
+
+    ``rate`` None: real time, or a round part of it if too short or long.
 
     Raises ModelError for a solution at a single time, and for more pictures than an animation may have.
     """
@@ -65,7 +67,7 @@ def clip_of(sol: Solution, rate: float | None, fps: float) -> Clip:
     if wanted > MOST:
         raise ModelError(
             f"{m.name}: {span:.4g} s at a rate of {rate:g} and {fps:g} pictures a second are {wanted:.0f} pictures; "
-            f"an animation has {MOST} at most: give a higher rate=, a lower fps=, or a shorter solution"
+            f"an animation has {MOST} at most. Give a higher rate=, a lower fps=, or a shorter solution"
         )
     if wanted < 1.0:
         raise ModelError(
@@ -81,7 +83,7 @@ def clip_of(sol: Solution, rate: float | None, fps: float) -> Clip:
 
 
 def _round_rate(span: float) -> float:
-    """Return 1 if ``span`` (s) is watchable, else the nearest of ..., 1/5, 1/2, 2, 5, ... that makes it so."""
+    """Return 1 if ``span`` (s) is watchable, else the nearest of ..., 1/5, 1/2, 2, 5, ..."""
     rate, steps = 1.0, (2.0, 2.5, 2.0)
     for k in range(60):
         if span / rate < SHORTEST:

@@ -1,4 +1,7 @@
-"""Pictures to files: MP4 by ffmpeg, which any player and web page shows, and GIF by Pillow. Written whole."""
+"""Encoders of pictures: MP4 by ffmpeg, which any player shows, and GIF by Pillow.
+
+Files are written whole.
+"""
 
 from __future__ import annotations
 
@@ -85,7 +88,10 @@ def _run(path: Path, command: list[str], pictures: Iterable[np.ndarray]) -> None
 
 
 def write_gif(path: Path, pictures: Iterable[np.ndarray], count: int, fps: float, hold: float) -> None:
-    """Write (H, W, 4) bytes of ``count`` pictures, to be played for ever. ``hold``: seconds more for the last one."""
+    """Write (H, W, 4) bytes of ``count`` pictures as a GIF that repeats for ever.
+
+    ``hold``: seconds more for the last one.
+    """
     from PIL import Image
 
     kept = [Image.fromarray(np.ascontiguousarray(picture[..., :3])) for picture in pictures]

@@ -1,4 +1,4 @@
-"""Energy on its way: what joints, drivers and forces give to a body in a second, from the giver to the receiver.
+"""Flow of energy: the power of joints, drivers and forces, from the giver to the receiver.
 
 P = F . v + T w        on a body; F, T what acts on it at a point that moves with v, w its angular velocity
 """
@@ -21,7 +21,7 @@ class Balance:
 
     kinetic: np.ndarray
     potential: np.ndarray
-    """From its least on."""
+    """Potential energy, counted from its least."""
     powers: dict[str, np.ndarray]
     """Powers of drivers and forces, by name; positive: given to the motion."""
     bodies: dict[str, np.ndarray]
@@ -29,7 +29,7 @@ class Balance:
 
 
 def flow_arrows(sol: Solution, tracks: Tracks) -> list[Arrow]:
-    """Return arrows of power: through joints from body to body, from drivers and forces into bodies or out of them."""
+    """Return arrows of power: between bodies through joints, and between bodies, drivers and forces."""
     m, out = sol.mechanism, []
     middles = {name: _middle(m, tracks, name) for name in m.bodies if name != "ground"}
     drivers = set(m.drivers.values())
@@ -75,7 +75,10 @@ def _middle(m: Model, tracks: Tracks, name: str) -> np.ndarray:
 
 
 def _arrow(place: np.ndarray, way: np.ndarray, power: np.ndarray, force: np.ndarray, middle: bool) -> Arrow:
-    """Return an arrow along ``way`` (T, 2) where power is positive; along the force where the way has no length."""
+    """Return an arrow along ``way`` (T, 2) where power is positive.
+
+    It is along the force where the way has no length.
+    """
     length = np.hypot(*way.T)
     short = length < 1e-9 * max(float(length.max()), 1e-12)
     way = np.where(short[:, None], force, way)

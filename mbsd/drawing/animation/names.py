@@ -1,6 +1,7 @@
-"""Names that move with the machine: each keeps one side of its anchor over the whole clip, the least covered one.
+"""Names that move with the mechanism, each on the least covered side of its anchor.
 
-A word is drawn once as a small picture and laid over each picture of the clip.
+A name keeps its side over the whole clip. A word is drawn once as a small picture and laid over each picture of the
+clip.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from mbsd.model.mechanism import Model
 
 DIRECTIONS = 12
 DISTANCES = (0.0, 0.6, 1.4)
-"""Beyond the clearance, in heights of the word."""
+"""Distances beyond the clearance, in heights of the word."""
 MARGIN = 2.0
 """Pixels."""
 
@@ -38,7 +39,10 @@ class Placed:
 def place_names(
     drawn: Sequence[Brush], frame: tuple[float, float, float, float], wanted: Sequence[int]
 ) -> list[Placed]:
-    """Return places of the ``wanted`` labels from pictures that kept obstacles; ``frame``: left, low, right, top."""
+    """Return places of the ``wanted`` labels from pictures that kept obstacles.
+
+    ``frame``: left, low, right, top.
+    """
     first = drawn[0]
     points = [brush.view.pixels(np.concatenate(brush.obstacles)) for brush in drawn]
     anchors = [brush.view.pixels([label.anchor for label in brush.labels]) for brush in drawn]

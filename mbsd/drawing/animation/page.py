@@ -162,7 +162,10 @@ def paint_still(panel: Panel, figure: Any, renderer: Any) -> None:
 
 
 def _scale_bar(panel: Panel, figure: Any, renderer: Any, taken: float) -> None:
-    """Paint a length of a round number, at the lower right; at the upper right where words reach there (pixels)."""
+    """Draw a scale bar of a round length at the lower right.
+
+    It is at the upper right where words reach there (pixels).
+    """
     px, (left, low, width, height) = panel.dpi / 100, panel.box
     metres = round_below(0.16 * min(width, 500 * px) / panel.brush.view.scale)
     long, x, y = metres * panel.brush.view.scale, left + width - 14 * px, low + 17 * px

@@ -1,4 +1,4 @@
-"""One picture of the machine within a page: where it is, what it shows, and what each picture of a clip adds."""
+"""One picture of the mechanism within a page: its place, its content, and what each frame adds."""
 
 from __future__ import annotations
 

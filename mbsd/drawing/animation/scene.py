@@ -1,4 +1,4 @@
-"""Scene of an animation, prepared before the first picture: symbols, extent, arrows, scales, traces, impacts."""
+"""Scene of an animation, prepared before the first picture: symbols, arrows, scales, traces, impacts."""
 
 from __future__ import annotations
 
@@ -59,14 +59,20 @@ class Scene:
         return LENGTH * max(self.size, 10 * self.steady.unit)
 
     def draw(self, brush: Brush, k: int, colours: dict[str, str]) -> None:
-        """Draw the machine at picture ``k``: springs keep their turns, ground its signs, teeth turn with wheels."""
+        """Draw the mechanism at picture ``k``.
+
+        Springs keep their turns, ground its signs, teeth turn with wheels.
+        """
         self.steady.ready(
             brush, {name: float(view.theta[k] - view.theta[0]) for name, view in self.tracks.views.items()}
         )
         draw_on(brush, self.sol.mechanism, self.tracks.pose(k), colours, False, self.steady.sides)
 
     def drawn(self, brush: Brush, k: int, colours: dict[str, str]) -> Drawn:
-        """Return the machine as marks in the scale of ``brush``; panels of one scale share them, unless bodies glow."""
+        """Return the mechanism as marks in the scale of ``brush``.
+
+        Panels of one scale share them, unless bodies glow.
+        """
         key = k, brush.view.scale
         if key in self._drawn and not brush.tints:
             return self._drawn[key]

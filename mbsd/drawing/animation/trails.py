@@ -51,7 +51,10 @@ def trails_of(whole: Solution, here: Solution) -> list[Trail]:
 
 
 def draw_trails(brush: Brush, trails: list[Trail], clip: Clip, k: int) -> None:
-    """Draw trails at picture ``k``: whole and faint if the motion repeats, else so far; the last part bright."""
+    """Draw trails at picture ``k``: whole and faint if the motion repeats, else up to now.
+
+    The last part is bright.
+    """
     now, span = float(clip.times[k]), float(np.ptp(clip.times)) * len(clip.times) / max(1, len(clip.times) - 1)
     for trail in trails:
         times, path = trail.times, trail.path
@@ -88,7 +91,7 @@ def _smooth(t: np.ndarray, x: np.ndarray, v: np.ndarray, jumps: np.ndarray) -> t
 
 
 SECONDS = 0.35
-"""For which the ring is seen."""
+"""Time for which the ring is seen."""
 SMALLEST = 0.02
 """Fraction of the largest impulse: smaller ones are not shown."""
 MOST = 60

@@ -1,4 +1,4 @@
-"""Signs of contacts: the line, terrain or disc that is touched, the disc that touches it, ropes and stops."""
+"""Signs of contacts: lines, terrains, discs, ropes and stops."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from mbsd.drawing.symbols.wheels import draw_disc
 from mbsd.model.joint import Joint
 
 BEYOND = 3.0
-"""How far a floor goes on beyond what touches it, in units."""
+"""Length of a floor beyond what touches it, in units."""
 ALIKE = 1e-9
 """Lines whose places and directions differ by less (m, rad) are one line."""
 
@@ -138,7 +138,7 @@ def _rope_line(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]
 
 
 def _rope(i: np.ndarray, j: np.ndarray, length: float) -> np.ndarray:
-    """Return (k, 2) straight where it is taut; where it is slack, a parabola of its length that hangs down."""
+    """Return (k, 2) of a rope: straight where taut, else a hanging parabola of its length."""
     gap = j - i
     distance = float(np.hypot(*gap))
     s = np.linspace(0.0, 1.0, 33)

@@ -66,7 +66,7 @@ class Place:
 
 
 def free_side(directions: list[float]) -> np.ndarray:
-    """Return down, else up, left or right: the first with room beside links that leave at these angles (rad)."""
+    """Return down, up, left or right: the first with room beside links at these angles (rad)."""
     best, room = -math.pi / 2, -1.0
     for side in (-math.pi / 2, math.pi / 2, math.pi, 0.0):
         nearest = min((abs((side - d + math.pi) % (2 * math.pi) - math.pi) for d in directions), default=math.pi)
@@ -76,7 +76,7 @@ def free_side(directions: list[float]) -> np.ndarray:
 
 
 BESIDE = 1.4
-"""How far the line of a rack or a rolling disc goes on to both sides, in its radii."""
+"""Length of the line of a rack or a rolling disc to both sides, in its radii."""
 ROUND = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1)], float)
 
 

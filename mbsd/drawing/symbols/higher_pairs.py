@@ -178,7 +178,10 @@ def _wheel(slots: int, distance: float, radius: float, rim: float, wide: float) 
 
 
 def _lock(slots: int, room: float, lock: float) -> np.ndarray:
-    """Return (k, 2) outline of the locking disc, cut away towards the pin (the x axis) for the wheel's tips."""
+    """Return (k, 2) outline of the locking disc, cut away for the wheel's tips.
+
+    It is cut towards the pin, the x axis.
+    """
     half = math.pi / 2 - math.pi / slots
     arc = np.linspace(half, 2 * math.pi - half, 61)
     rim = lock * np.stack([np.cos(arc), np.sin(arc)], axis=1)

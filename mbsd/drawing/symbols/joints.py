@@ -1,4 +1,4 @@
-"""The standard symbols of joints and drivers: pin circle, slider block on its guide, slot, weld, rod, arrows.
+"""Standard symbols of joints and drivers: pin circle, slider on its guide, slot, weld, rod, arrows.
 
 Those of gears and belts are in wheels.py, of cams, Genevas and what rolls in higher_pairs.py.
 

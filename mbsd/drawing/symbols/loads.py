@@ -195,7 +195,7 @@ def _arrow(canvas: Canvas, at: np.ndarray, along: np.ndarray) -> np.ndarray:
 VALVE, LIFT, OFF_AXIS = 0.3, 0.16, 0.46
 """Half the width of a valve, how far an open one is lifted, and how far from the middle it is, in half bores."""
 SKIRT = 0.3
-"""How far the barrel reaches beyond the piston's lowest place, in half bores."""
+"""Length of the barrel beyond the piston's lowest place, in half bores."""
 SLENDER = 0.07
 """Half the width of a strut's barrel, in its length."""
 

@@ -1,4 +1,7 @@
-"""Lines, profiles and curves that something runs on, drawn as far as it goes: beyond its ends each goes on straight."""
+"""Lines, profiles and curves on which something runs, drawn as far as it goes.
+
+Beyond its ends each goes on straight.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,7 @@ from mbsd.model.joint import Joint
 from mbsd.model.laws.curve import Curve
 
 NEAR = 0.02
-"""What is nearer than this to a straight continuation touches it, in the size of its curve."""
+"""Distance from a straight continuation within which something touches it, in the size of its curve."""
 LEAST = 1e-6
 """A continuation shorter than this is none, in the size of its curve."""
 MOST = 400
@@ -24,7 +27,10 @@ MOST = 400
 
 
 def draw_way(canvas: Canvas, path: np.ndarray, body: str, colours: dict[str, str]) -> None:
-    """Draw a line or curve of a body that something runs on, on its left; ground's has strokes on the right."""
+    """Draw a line or curve of a body on which something runs, to its left.
+
+    Ground's has strokes on the right.
+    """
     with canvas.on(on_body(body)):
         if body == "ground":
             _hatched(canvas, path)

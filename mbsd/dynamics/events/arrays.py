@@ -102,10 +102,10 @@ class Curves(NamedTuple):
     """(k,) parameters of feet after a step."""
 
 
-LIMIT, FORCE, UNSHARED, PREVIOUS, LEFT, GIVES = range(6)
-"""Rows of Sticks.vector: limits of friction; normal forces and friction; friction before it is shared, and as it was
-shared last; accelerations that friction leaves, and friction that would hold joints alone; signs of ways that give way,
-and 1 of gaps that push then (giving_way.py)."""
+LIMIT, FORCE, UNSHARED, SHARED, LEFT, GIVES = range(6)
+"""Rows of Sticks.vector: limits of friction; normal forces and friction; friction before it is shared, and after;
+accelerations that friction leaves, and friction that would hold joints alone; signs of ways that give way, and 1 of
+gaps that push then (sticking/deciding.py)."""
 NO_AGREEMENT = 20.0
 """Value of FAILURE where normal forces of joints and the friction that they cause do not agree."""
 NOW, LAST, FOUND, BASIS = range(4)
@@ -191,7 +191,7 @@ class Contacts(NamedTuple):
     parts: Any
     """(6,) PARTS."""
     samples: Any
-    """(c, 6) what is looked at along a step, at PARTS: see within.read."""
+    """(c, 6) guards along a step, at PARTS; see guards.py."""
     answer: Any
     """(c, 3 nb) change of velocities by a unit impulse along each row."""
     compliance: Any

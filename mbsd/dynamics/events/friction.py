@@ -51,8 +51,8 @@ from mbsd.dynamics.events.arrays import (
     STAYING,
     TAKING,
 )
-from mbsd.dynamics.events.pushes import STIFF, lowest_row, pivot_to_end
-from mbsd.dynamics.events.rows import find_rates, gaps_of, keep_independent, move_zero, stop
+from mbsd.dynamics.events.laws.complementarity import lowest_row, pivot_to_end
+from mbsd.dynamics.events.rows import STIFF, find_rates, gaps_of, keep_independent, move_zero, stop
 from mbsd.equations.joint_friction import STATIC as JOINT_STATIC
 
 AT_LIMIT = 1e-10
@@ -63,6 +63,8 @@ GRAZING = 1e-7
 """Part of what acts on a gap below which its acceleration is none, where a contact closes that does not push yet."""
 BEGINS = 1e-300
 """Normal force of a contact that holds though it does not push yet (N)."""
+FAINT = 1e-12
+"""Part of the largest load below which a normal force is none."""
 IN_TURN = 5
 """Events at one time, for each contact, after which contacts are no longer taken one by one."""
 
@@ -265,13 +267,13 @@ def one_by_one(contacts):
 
 
 @internal
-def acceleration_of(contacts, compliance, forces, k):
+def acceleration_of(contacts, forces, k):
     """Return the acceleration of row k under N and T in ``forces`` (c,) of chosen[TAKING], and its largest part."""
     out = contacts.vector[FREE, k]
     most = abs(out)
     for j in range(contacts.place.shape[0]):
         if contacts.chosen[TAKING, j] != 0:
-            part = compliance[k, j] * forces[j]
+            part = contacts.friction.compliance[k, j] * forces[j]
             out += part
             most = max(most, abs(part))
     return out, most
@@ -280,7 +282,7 @@ def acceleration_of(contacts, compliance, forces, k):
 @internal
 def left_of(contacts, forces, k, limit, rounding):
     """Return the acceleration of way k, 0 where friction up to ``limit`` holds it; ``rounding``: part taken as 0."""
-    left = acceleration_of(contacts, contacts.friction.compliance, forces, k)[0]
+    left = acceleration_of(contacts, forces, k)[0]
     own = contacts.compliance[k, k]
     others = abs(left - own * forces[k])
     zero = max(rounding * max(own * limit, others), UNSURE * abs(contacts.vector[FREE, k]))
@@ -288,11 +290,11 @@ def left_of(contacts, forces, k, limit, rounding):
 
 
 @internal
-def begin_touched(contacts, compliance, touched, faint, rounding):
+def begin_touched(contacts, touched, faint, rounding):
     """Let gap ``touched`` hold that has just closed, where it does not push yet: its push begins now."""
     if touched < 0 or contacts.chosen[STAYING, touched] == 0 or contacts.vector[NORMAL, touched] > faint:
         return
-    left, most = acceleration_of(contacts, compliance, contacts.vector[NORMAL], touched)
+    left, most = acceleration_of(contacts, contacts.vector[NORMAL], touched)
     if abs(left) > GRAZING * most:
         return
     friction = contacts.friction
@@ -302,26 +304,6 @@ def begin_touched(contacts, compliance, touched, faint, rounding):
             along = left_of(contacts, contacts.vector[NORMAL], gaps + w, 0.0, rounding)
             friction.number[w, NEXT_SIGN] = math.copysign(1.0, along) if along != 0.0 else 0.0
     contacts.vector[NORMAL, touched] = BEGINS
-
-
-@lazy(bool)
-def find_friction(dyn, scratch, contacts, v, faint):
-    """Fill vector[NORMAL] with N and T of the contacts in chosen[STAYING], and NEXT_SIGN.
-
-    vector[FREE] are the accelerations of all rows without N and T, v (3 nb,) the velocities; an N up to ``faint`` is
-    none. Returns False where no N and T are possible.
-    """
-    begin_deciding(contacts, 1.0)
-    for _ in range(contacts.friction.gap.shape[0] + 1):
-        find_resting(dyn, scratch, contacts, v, -1)
-        guess(contacts)
-        press(contacts)
-        pressed = contacts.friction.compliance
-        if not solve_with_friction(contacts, pressed, contacts.vector[FREE], HOLDING, contacts.vector[NORMAL]):
-            return False
-        if not breaks(contacts, faint, AT_LIMIT):
-            break
-    return True
 
 
 @internal

@@ -4,8 +4,8 @@
     it slides       its speed, sign kept                it sticks         mu_s N - |T|
     user's event    its value, sign kept
 
-Each is that of a row of Contacts: of a gap, or of a way; sticking/ways.py says what those of joints are. Scalars are
-not negative now, and mean an event where they fall through zero.
+Each is that of a row of Contacts: of a gap, or of a way; those of joints: sticking/together.py. Scalars are not
+negative now, and mean an event where they fall through zero.
 
     q(x) = q_0 + h q_0' x + h^2 q_0'' x^2 / 2 + ... x^5        x = (t - t_0) / h
 
@@ -38,7 +38,7 @@ from mbsd.dynamics.events.arrays import (
 )
 from mbsd.dynamics.events.following import advance_to
 from mbsd.dynamics.events.rows import any_held, gaps_of, read_gaps
-from mbsd.dynamics.events.sticking.ways import read_ways
+from mbsd.dynamics.events.sticking.together import read_ways
 from mbsd.dynamics.events.users import signed
 from mbsd.dynamics.formulation import along, bends, derivative, measure_gaps, speeds, without_contacts
 from mbsd.dynamics.integrators.advance import NO_LIMIT, copy_state

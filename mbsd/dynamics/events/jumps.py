@@ -7,9 +7,9 @@ By Poisson's law with Coulomb friction in both phases of an impact:
 
 For one contact without friction this is Newton's law, g'+ = -e g'-. Impacts pass on in rounds: a round takes the
 contacts that approach, all at once; those that approach by its impulses are the next round, as in Newton's cradle.
-Friction of joints is left out of impacts. Then contacts that do not separate push so that gaps do not close
-(pushes.py), and slide or stick (friction/decisions.py). A rebound too slow to count ends here: its rate must not go on
-into accelerations, which would turn bodies that two contacts hold.
+Friction of joints is left out of impacts. Then contacts that do not separate push so that gaps do not close, and slide
+or stick as joints may (sticking/deciding.py). A rebound too slow to count ends here: its rate must not go on into
+accelerations, which would turn bodies that two contacts hold.
 
 Source: Pfeiffer, Glocker, Multibody Dynamics with Unilateral Contacts, ch. 8; Glocker, Simulation von harten
 Kontakten, on rounds and on laws that keep the energy from growing (sure where all coefficients of restitution in a
@@ -20,14 +20,16 @@ from __future__ import annotations
 
 from mbsd.compiling.jit import apart, internal, kernel
 from mbsd.dynamics.events.arrays import (
+    APART,
     BESIDE,
     CLOSED,
     CLUTCH,
     ENERGY,
-    FREE,
+    FRICTION,
     GAP,
     GIVEN,
     HELD,
+    JOINTS,
     KEPT,
     KIND,
     KINETIC,
@@ -41,22 +43,18 @@ from mbsd.dynamics.events.arrays import (
     RESTITUTION,
     ROW,
     SETTLE,
+    SHARING,
     SIGN,
+    SLIDE,
     STAYING,
     TAKING,
+    TOGETHER,
     TOUCHING,
+    WAY,
 )
-from mbsd.dynamics.events.friction import (
-    AT_LIMIT,
-    BEGINS,
-    begin_touched,
-    find_friction,
-    note_met,
-    slide_or_stick,
-    solve_with_friction,
-)
-from mbsd.dynamics.events.pushes import find_compliance, solve_pushes
+from mbsd.dynamics.events.friction import note_met, one_by_one, slide_or_stick, solve_with_friction
 from mbsd.dynamics.events.rows import (
+    find_answers,
     find_rates,
     gaps_of,
     give,
@@ -66,8 +64,11 @@ from mbsd.dynamics.events.rows import (
     release_rows,
     stop,
 )
-from mbsd.dynamics.formulation import along, derivative, push
+from mbsd.dynamics.events.sticking.deciding import decide
+from mbsd.dynamics.events.sticking.sharing import stand
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.state import TIME
+from mbsd.equations.joint_friction import SENSE
 
 ROUNDS = 200
 """Rounds of an impact; after so many, all closed contacts are solved at once without rebound."""
@@ -76,8 +77,6 @@ CREEP = 1e-6
 
 CLOSE = 1e2
 """Gaps that are closed with another, in those that count as zero."""
-FAINT = 1e-12
-"""Part of the largest load below which a normal force is none."""
 
 
 @internal
@@ -120,15 +119,6 @@ def find_staying(contacts, opens):
     return staying
 
 
-@internal
-def _push(contacts):
-    """Fill vector[NORMAL] with impulses of the rows in chosen[TAKING], for the rates in vector[RATE]."""
-    if contacts.friction.gap.shape[0] > 0:
-        vector = contacts.vector
-        return solve_with_friction(contacts, contacts.compliance, vector[RATE], KINETIC, vector[NORMAL])
-    return solve_pushes(contacts, contacts.vector[RATE])
-
-
 @apart
 def _strike(dyn, scratch, contacts, v):
     """Let the contacts in chosen[TOUCHING] that approach push, in rounds; returns False where none can."""
@@ -137,6 +127,7 @@ def _strike(dyn, scratch, contacts, v):
     gaps = gaps_of(contacts)
     taking = contacts.chosen[TAKING]
     vector = contacts.vector
+    normal = vector[NORMAL]
     for k in range(gaps, count):
         vector[GIVEN, k] = 0.0
     for turn in range(ROUNDS + 1):
@@ -160,7 +151,7 @@ def _strike(dyn, scratch, contacts, v):
         take_ways(contacts, taking)
         for w in range(friction.gap.shape[0]):
             friction.number[w, BESIDE] = 0.0
-        if not _push(contacts):
+        if not solve_with_friction(contacts, contacts.compliance, vector[RATE], KINETIC, normal):
             return False
         give(contacts, v, vector[NORMAL])
         since = int(contacts.clock[LOGGED])
@@ -176,7 +167,7 @@ def _strike(dyn, scratch, contacts, v):
             for j in range(gaps):
                 if taking[k] != 0 and taking[j] != 0:
                     vector[RATE, k] += contacts.compliance[k, j] * vector[GIVEN, j]
-        if not _push(contacts):
+        if not solve_with_friction(contacts, contacts.compliance, vector[RATE], KINETIC, normal):
             return False
         for k in range(count):
             vector[PUSH, k] = vector[GIVEN, k] + vector[NORMAL, k]
@@ -217,91 +208,98 @@ def impacts(dyn, scratch, contacts, v):
     return True
 
 
-@apart
-def _decide(dyn, scratch, contacts, t, y, touched):
-    """Fill vector[NORMAL] with the normal forces of the contacts in chosen[STAYING]; whether there are some.
+@internal
+def _any_joint(contacts):
+    """Return True if there is a joint that may stick and that no event has released."""
+    there = False
+    for k in range(contacts.place.shape[0] - contacts.sticks.joint.shape[0], contacts.place.shape[0]):
+        there = there or contacts.number[k, RELEASED] == 0.0
+    return there
 
-    All contacts are released, and a state y (2, 3 nb) is what they begin with; ``touched``: the gap that has closed.
-    """
-    count = contacts.place.shape[0]
-    ways = contacts.friction.gap.shape[0]
-    schur = dyn.schur
-    derivative(dyn, scratch, t, y, contacts.rates, contacts.lam)
-    force = contacts.force
-    for c in range(force.shape[0]):
-        force[c] = scratch.force[c]
-    for b in range(schur.rows.shape[0]):
-        for s in range(2):
-            r = schur.rows[b, s]
-            if r >= 0:
-                push(dyn, scratch, r, contacts.lam[r], force)
-    largest = 0.0
-    for c in range(3, force.shape[0]):
-        largest = max(largest, abs(force[c]))
-    for k in range(count):
-        contacts.chosen[TAKING, k] = contacts.chosen[STAYING, k]
-        row = contacts.place[k, ROW]
-        contacts.vector[FREE, k] = along(dyn, scratch, row, contacts.rates[1]) - scratch.ws.right[0, row]
-    if ways > 0:
-        if not find_friction(dyn, scratch, contacts, y[1], FAINT * largest):
-            return False
-    elif not solve_pushes(contacts, contacts.vector[FREE]):
-        return False
-    compliance = contacts.friction.compliance if ways > 0 else contacts.compliance
-    begin_touched(contacts, compliance, touched, FAINT * largest, AT_LIMIT)
-    for k in range(gaps_of(contacts)):
-        if contacts.vector[NORMAL, k] != BEGINS and not contacts.vector[NORMAL, k] > FAINT * largest:
+
+@internal
+def _settle(dyn, scratch, contacts, state, staying, halted, slipping, touched):
+    """Decide, and again once the ``staying`` gaps that hold are at rest; returns False where nothing is possible."""
+    if staying == 0 and not _any_joint(contacts):
+        for k in range(contacts.place.shape[0]):
             contacts.vector[NORMAL, k] = 0.0
+        return True
+    if not decide(dyn, scratch, contacts, state, halted, slipping, touched):
+        return False
+    for _ in range(staying):
+        if not moving(dyn, scratch, contacts, state.y[1]):
+            return True
+        stop(dyn, scratch, contacts, state.y[1])
+        if not decide(dyn, scratch, contacts, state, halted, slipping, touched):
+            return False
     return True
+
+
+@internal
+def _hold_decided(dyn, scratch, contacts):
+    """Let rows hold as was decided."""
+    count = contacts.place.shape[0]
+    number = contacts.number
+    taking = contacts.chosen[TAKING]
+    joints = count - contacts.sticks.joint.shape[0]
+    gaps = gaps_of(contacts)
+    for k in range(gaps):
+        taking[k] = 1 if contacts.vector[NORMAL, k] > 0.0 else 0
+        number[k, CLOSED] = 1.0 * taking[k]
+        if taking[k] != 0 and contacts.place[k, KIND] == CLUTCH:
+            move_zero(scratch, contacts, k)
+    slide_or_stick(scratch, contacts)
+    for k in range(joints, count):
+        taking[k] = 0
+        if number[k, RELEASED] != 0.0:
+            continue
+        taking[k] = 1 if number[k, SIGN] == 0.0 else 0
+        dyn.loads.friction_number[contacts.place[k, FRICTION], SENSE] = number[k, SIGN]
+        if taking[k] != 0 and number[k, CLOSED] == 0.0:
+            move_zero(scratch, contacts, k)
+        number[k, CLOSED] = 1.0 * taking[k]
+    keep_independent(contacts, taking)
+    sharing = False
+    mixed = False
+    alone = contacts.sticks.borne.shape[0] == 0 or one_by_one(contacts)
+    for k in range(count):
+        number[k, HELD] = 1.0 * contacts.chosen[KEPT, k]
+        if k >= gaps and taking[k] != 0:
+            sharing = sharing or (number[k, HELD] == 0.0 and (k >= joints or not alone))
+            mixed = mixed or k < joints
+    contacts.clock[SHARING] = (TOGETHER if mixed else JOINTS) if sharing else APART
+    hold_rows(dyn, contacts)
 
 
 @apart
 def resolve(dyn, scratch, contacts, state, met):
-    """Resolve impacts, and decide what contacts do from now on, after the guard of row ``met`` fell through zero.
+    """Resolve impacts, and decide what contacts and joints do after row ``met`` came to an event; -1: at the start.
 
-    ``met`` is -1 at the start. Returns False where that is impossible; refusals.py says why.
+    Returns False where that is impossible; refusals.py says why.
     """
-    count = contacts.place.shape[0]
-    gaps = gaps_of(contacts)
-    number = contacts.number
     chosen = contacts.chosen
     v = state.y[1]
-    opens = met if 0 <= met < gaps and number[met, CLOSED] > 0.0 else -1
-    t = state.clock[TIME]
-    if gaps < count:
-        note_met(contacts, met, state.lam)
+    closed = met >= 0 and contacts.number[met, CLOSED] > 0.0
+    joint = met >= 0 and contacts.place[met, KIND] == WAY
+    together = closed and contacts.place[met, KIND] == SLIDE and contacts.clock[SHARING] == TOGETHER
+    note_met(contacts, -1 if together else met, state.lam)
     release_rows(dyn, contacts)
-    derivative(dyn, scratch, t, state.y, contacts.rates, contacts.lam)
+    stand(dyn, scratch, contacts, state.clock[TIME], state.y)
     touching = find_touching(scratch, contacts, met)
-    find_compliance(dyn, scratch, contacts, chosen[TOUCHING])
+    for k in range(contacts.place.shape[0]):
+        way = contacts.place[k, KIND] == WAY and contacts.number[k, RELEASED] == 0.0
+        chosen[TAKING, k] = 1 if chosen[TOUCHING, k] != 0 or way else 0
+    find_answers(dyn, scratch, contacts, chosen[TAKING])
     if touching > 0 and not impacts(dyn, scratch, contacts, v):
         return False
     find_rates(dyn, scratch, contacts, v)
-    staying = find_staying(contacts, opens)
-    for k in range(gaps):
-        chosen[TAKING, k] = 0
-    if staying > 0:
-        touched = met if met >= 0 and contacts.place[met, KIND] == GAP and opens < 0 else -1
-        if not _decide(dyn, scratch, contacts, t, state.y, touched):
-            return False
-        for _ in range(staying):
-            if not moving(dyn, scratch, contacts, v):
-                break
-            stop(dyn, scratch, contacts, v)
-            if not _decide(dyn, scratch, contacts, t, state.y, touched):
-                return False
-        for k in range(gaps):
-            chosen[TAKING, k] = 1 if contacts.vector[NORMAL, k] > 0.0 else 0
-    for k in range(gaps):
-        number[k, CLOSED] = 1.0 * chosen[TAKING, k]
-        if chosen[TAKING, k] != 0 and contacts.place[k, KIND] == CLUTCH:
-            move_zero(scratch, contacts, k)
-    if gaps < count:
-        slide_or_stick(scratch, contacts)
-    keep_independent(contacts, chosen[TAKING])
-    for k in range(count):
-        number[k, HELD] = 1.0 * chosen[KEPT, k]
-    hold_rows(dyn, contacts)
+    staying = find_staying(contacts, met if closed else -1)
+    halted = met if joint and not closed else -1
+    slipping = (joint and closed) or together
+    touched = met if met >= 0 and contacts.place[met, KIND] == GAP and not closed else -1
+    if not _settle(dyn, scratch, contacts, state, staying, halted, slipping, touched):
+        return False
+    _hold_decided(dyn, scratch, contacts)
     return True
 
 
@@ -339,5 +337,5 @@ def strike(dyn, scratch, contacts, t, y):
     release_rows(dyn, contacts)
     take_ways(contacts, contacts.chosen[TOUCHING])
     derivative(dyn, scratch, t, y, contacts.rates, contacts.lam)
-    find_compliance(dyn, scratch, contacts, contacts.chosen[TOUCHING])
+    find_answers(dyn, scratch, contacts, contacts.chosen[TOUCHING])
     return impacts(dyn, scratch, contacts, y[1])

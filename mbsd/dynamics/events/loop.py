@@ -17,13 +17,11 @@ from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import inlined, internal, kernel, lazy
 from mbsd.dynamics.events.arrays import (
     ACTED,
-    APART,
     AT_ONCE,
     BEFORE_AND_AFTER,
     BEGUN,
     BEGUN_NOW,
     CLOSED,
-    DIVIDES,
     ENERGY,
     FAILURE,
     GAP,
@@ -45,13 +43,11 @@ from mbsd.dynamics.events.arrays import (
     Stepping,
 )
 from mbsd.dynamics.events.following import advance_to
-from mbsd.dynamics.events.friction import one_by_one
 from mbsd.dynamics.events.guards import fit
 from mbsd.dynamics.events.jumps import resolve
 from mbsd.dynamics.events.rows import any_held, hold_rows
 from mbsd.dynamics.events.search import event_time, first_met
-from mbsd.dynamics.events.sticking.jumps import resolve_friction
-from mbsd.dynamics.events.sticking.ways import share_here, share_outputs
+from mbsd.dynamics.events.sticking.together import share_here, share_outputs
 from mbsd.dynamics.events.users import (
     ACTS,
     ENDED,
@@ -106,10 +102,6 @@ def _resolve(dyn, scratch, contacts, state, met):
     contacts.clock[FAILURE] = 0.0
     if contacts.place.shape[0] == 0:
         return True
-    again = contacts.friction.gap.shape[0] > 1 and not one_by_one(contacts)  # contacts come to their limits without end
-    if contacts.clock[DIVIDES] > 0.0 or again:
-        return resolve_friction(dyn, scratch, contacts, state, met)
-    contacts.clock[SHARING] = APART
     return resolve(dyn, scratch, contacts, state, met)
 
 
@@ -284,16 +276,11 @@ def _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, aft
 
 
 @inlined
-def _meet(dyn, scratch, state, settings, contacts, out, end, steps, before, after):
-    return _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, after)
-
-
-@inlined
 def _none(dyn, scratch, state, settings, contacts, out, end, steps, before, after):
     return NOT_SOLVED
 
 
-go_on = alternatives({Embedding: _none}, _meet)
+go_on = alternatives({Embedding: _none}, _go_on)
 """Go on to ``end`` (s), ``steps`` steps at most, meeting events; returns a status of ``advance``, or one of these."""
 
 

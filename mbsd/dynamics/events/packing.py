@@ -158,7 +158,7 @@ def _sticks_of(ready: PreparedDynamics, c: int, n3: int, rows: int) -> arrays.St
     own = c if _divides(ready) or len(_rough(ready)) > 1 else 0
     return arrays.Sticks(
         np.arange(c - len(ready.sticks), c),
-        np.zeros((arrays.GIVES + 1, own)),
+        np.zeros((arrays.GIVES + 1, c)),
         np.zeros((arrays.BASIS + 1, frictions)),
         np.zeros((own, rows)),
         np.zeros((2, rows)),
@@ -185,11 +185,10 @@ def _friction_of(ready: PreparedDynamics, c: int, n3: int, rows: int) -> arrays.
     number = np.zeros((len(rough), arrays.HOLDING + 1))
     for argument, column in arrays.FRICTION_ARGUMENTS.items():
         number[:, column] = [contact.given(argument) for _, contact in rough]
-    own = c if rough or len(ready.dynamics.loads.friction) else 0
     return arrays.Friction(
         np.array([k for k, _ in rough], np.int64),
         number,
-        np.zeros((own, own)),
+        np.zeros((c, c)),
         np.array([*order, *range(len(order), c)], np.int64),
         sliding_for(np.zeros((0, 2), np.int64), n3, rows),
     )

@@ -11,7 +11,7 @@ from mbsd.arrays.friction_along import REMEDY, jam
 from mbsd.base.errors import SimulationError
 from mbsd.dynamics.events.arrays import ALONE, FAILURE, NO_AGREEMENT, NOW, TAKING, Contacts
 from mbsd.dynamics.events.loop import INSIDE
-from mbsd.dynamics.events.pushes import STIFF
+from mbsd.dynamics.events.rows import STIFF
 from mbsd.dynamics.state import TIME, State
 from mbsd.dynamics.switches import RunContact
 from mbsd.model.event import Happening

@@ -1,4 +1,4 @@
-"""Rows of J that events switch, at a pose: their rates, impulses along them, and which of them hold."""
+"""Rows of J that events switch, at a pose: their rates, what impulses along them change, and which of them hold."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 
 from mbsd.compiling.jit import apart, internal
 from mbsd.dynamics.events.arrays import (
+    ALONE,
     BLOCK,
     CLOSED,
     HELD,
@@ -19,9 +20,11 @@ from mbsd.dynamics.events.arrays import (
     SIGN,
     TAKING,
 )
-from mbsd.dynamics.formulation import along, measure_gaps
+from mbsd.dynamics.formulation import along, measure_gaps, push, respond
 from mbsd.equations.system import ZERO
 
+STIFF = 1e-12
+"""Compliance of a row, as part of that of its bodies alone, below which nothing gives way."""
 DEPENDENT = 1e-9
 """Part of its compliance that the rows before must leave of a row."""
 
@@ -69,6 +72,46 @@ def find_rates(dyn, scratch, contacts, v):
     """Fill vector[RATE] at velocities v (3 nb,)."""
     for k in range(contacts.place.shape[0]):
         contacts.vector[RATE, k] = along(dyn, scratch, contacts.place[k, ROW], v)
+
+
+@apart
+def find_answer(dyn, scratch, contacts, k, lam):
+    """Fill answer[k], the change of velocities by a unit impulse of row k, and vector[ALONE] without joints.
+
+    lam (m,) takes the multipliers. Factors and scratch.ws.jac are those of the pose, with all contacts released.
+    """
+    n3 = dyn.inverse.shape[0]
+    force = contacts.force
+    row = contacts.place[k, ROW]
+    for c in range(n3):
+        force[c] = 0.0
+    push(dyn, scratch, row, 1.0, force)
+    alone = 0.0
+    for c in range(3, n3):
+        alone += dyn.inverse[c] * force[c] ** 2
+    contacts.vector[ALONE, k] = alone if alone > 0.0 else 1.0
+    respond(dyn, scratch, force, 0.0, contacts.answer[k], lam)
+
+
+@internal
+def find_answers(dyn, scratch, contacts, flags):
+    """Fill answer, compliance and vector[ALONE] of the rows in ``flags`` (c,), and borne where joints have friction."""
+    keeps = contacts.sticks.borne.shape[0] > 0
+    for k in range(contacts.place.shape[0]):
+        if flags[k] != 0:
+            find_answer(dyn, scratch, contacts, k, contacts.sticks.borne[k] if keeps else scratch.multipliers)
+    read_compliance(dyn, scratch, contacts, flags)
+
+
+@internal
+def read_compliance(dyn, scratch, contacts, flags):
+    """Fill compliance of the rows in ``flags`` (c,), whose answers are there."""
+    count = contacts.place.shape[0]
+    for k in range(count):
+        for j in range(count):
+            if flags[k] != 0 and flags[j] != 0:
+                row = contacts.place[j, ROW]
+                contacts.compliance[j, k] = along(dyn, scratch, row, contacts.answer[k])
 
 
 @internal

@@ -309,7 +309,7 @@ PASSED, HAPPENED, ENDED, ACTS = range(4)
 
 
 @internal
-def _act(events, e, t, q, v):
+def act(events, e, t, q, v):
     """Let the compiled action of event e change v (n,)."""
     first = events.table[e, ACTION_FIRST]
     count = events.table[e, ACTION_FRAMES]
@@ -335,7 +335,7 @@ def happen(dyn, scratch, contacts, state, e):
     for k in range(events.release.shape[0]):
         releases = releases or events.release[k, GROUP] == e
     if table[e, ACTION] != 0:
-        _act(events, e, state.clock[TIME], state.y[0], state.y[1])
+        act(events, e, state.clock[TIME], state.y[0], state.y[1])
     if releases:
         release_joints(dyn, scratch, contacts, e, state.clock[TIME], state.y[0])
     if releases or table[e, ACTION] != 0:

@@ -22,12 +22,11 @@ from mbsd.arrays.packing import Packed, pack
 from mbsd.arrays.states import columns_of, ones_of, widened, with_states
 from mbsd.base.errors import MobilityError, ModelError
 from mbsd.base.quantity import counted
-from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.prepare.inertia import as_heavy_as_ground, lift_inertia, passes_for
 from mbsd.dynamics.prepare.large import MANY_COORDINATES, blocks_of, consistent_large, independent_large
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.prepare.refusals import refuse_pressed, refuse_singular_start, refuse_unheld
-from mbsd.dynamics.reference.arrays import Dynamics, scratch_for
+from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.reference.pins import with_pins
 from mbsd.dynamics.reference.schur import elimination_sequence
 from mbsd.dynamics.reference.sliding import sliding_for
@@ -103,14 +102,10 @@ def _measured_accelerations(ready: PreparedDynamics, holders: list[_Holder], eff
     """(n,) x'' of what each holder measures, at the start, under their efforts (n,)."""
     packed = ready.packed
     _write(ready, holders, efforts)
-    state = np.stack([ready.initial.q, ready.initial.v])
-    out, lam = np.zeros_like(state), np.zeros(len(packed.ws.phi))
-    scratch = scratch_for(ready.dynamics, packed.ws, len(packed.motions), 1)
-    derivative(ready.dynamics, scratch, ready.start, state, out, lam)
-    packed.specials.check()
+    acceleration = ready.evaluate_start()[0][1]
     steps = MOMENT * np.array([-1.0, 1.0])[:, None]
-    q = state[0] + steps * state[1] + 0.5 * steps**2 * out[1]
-    v = state[1] + steps * out[1]
+    q = ready.initial.q + steps * ready.initial.v + 0.5 * steps**2 * acceleration
+    v = ready.initial.v + steps * acceleration
     return np.array(
         [
             np.diff(measured_rate(packed, holder.element, holder.i, holder.j, q, v))[0] / (2.0 * MOMENT)

@@ -18,9 +18,10 @@ from mbsd.arrays.curve_branches import CurveBranches
 from mbsd.arrays.packing import Packed
 from mbsd.compiling.jit import Often
 from mbsd.dynamics import state as run_state
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.prepare.large import MANY_COORDINATES
 from mbsd.dynamics.prepare.stops import Stops, stops_of
-from mbsd.dynamics.reference.arrays import Dynamics
+from mbsd.dynamics.reference.arrays import Dynamics, Scratch, scratch_for
 from mbsd.dynamics.state import PAUSED, TIME, State
 from mbsd.dynamics.switches import JointStick, Switches
 from mbsd.equations.interactions.switching import APPROACHED
@@ -167,6 +168,15 @@ class PreparedDynamics:
         """Where steps end because loads or laws jump or are short there."""
         loads, laws, initial = self.dynamics.loads, self.dynamics.laws, self.initial
         return stops_of(self.packed, loads, laws, self.start, self.end, initial.q, initial.v)
+
+    def evaluate_start(self) -> tuple[np.ndarray, np.ndarray, Scratch]:
+        """Return d(state)/dt (2, 3 nb) and multipliers (m,) at the start, and the scratch of that evaluation."""
+        packed, state = self.packed, np.stack([self.initial.q, self.initial.v])
+        out, lam = np.zeros_like(state), np.zeros(len(packed.ws.phi))
+        scratch = scratch_for(self.dynamics, packed.ws, len(packed.motions), 1)
+        derivative(self.dynamics, scratch, self.start, state, out, lam)
+        packed.specials.check()
+        return out, lam, scratch
 
     def begun(self, times: np.ndarray) -> tuple[run_state.State, run_state.Output]:
         """A run at its consistent start, and room for its outputs."""

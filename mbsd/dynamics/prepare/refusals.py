@@ -25,7 +25,6 @@ from mbsd.arrays.friction_along import friction_under
 from mbsd.arrays.loads import loads_along, pack_loads
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import MechanismError, MobilityError, ModelError, SimulationError, SingularPoseError
-from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.prepare.large import MANY_COORDINATES
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.arrays import scratch_for
@@ -65,11 +64,7 @@ def refuse_unheld(ready: PreparedDynamics, reference: np.ndarray) -> None:
     dynamics, packed = ready.dynamics, ready.packed
     _refuse_massless(packed, ready.mobility, ready.start, ready.initial.q)
     _refuse_loaded(ready)
-    state = np.stack([ready.initial.q, ready.initial.v])
-    out, lam = np.zeros_like(state), np.zeros(len(packed.ws.phi))
-    scratch = scratch_for(dynamics, packed.ws, len(packed.motions), 1)
-    derivative(dynamics, scratch, ready.start, state, out, lam)
-    packed.specials.check()
+    out, lam, scratch = ready.evaluate_start()
     finite = np.isfinite(scratch.force[3:])
     if not finite.all():
         name = packed.body_names[1 + int(np.argmin(finite)) // 3]
@@ -212,12 +207,7 @@ def refuse_pressed(m: Model, start: float, end: float, prepared: Callable[..., P
 
 def _reaction(ready: PreparedDynamics, name: str) -> float:
     """The force (N) that the pin ``name`` carries at the start."""
-    packed, dynamics = ready.packed, ready.dynamics
-    state = np.stack([ready.initial.q, ready.initial.v])
-    out, lam = np.zeros_like(state), np.zeros(len(packed.ws.phi))
-    derivative(dynamics, scratch_for(dynamics, packed.ws, len(packed.motions), 1), ready.start, state, out, lam)
-    packed.specials.check()
-    return math.hypot(*lam[packed.rows_of(name)].tolist())
+    return math.hypot(*ready.evaluate_start()[1][ready.packed.rows_of(name)].tolist())
 
 
 BESIDE = (0.003, 0.001)

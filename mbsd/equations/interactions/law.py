@@ -152,7 +152,10 @@ def normal_force(state, depth, rate, stiffness, exponent, damping, loss, least_a
 
 @inlined
 def end_stop(state, out, by, rate, stroke, stiffness, damping):
-    """Return the force (N) of stops at 0 and ``stroke`` against a travel ``by`` (m); put its depth into SWITCH."""
+    """Return the force (N) of stops at 0 and ``stroke`` against a travel ``by`` (m).
+
+    The depth goes into SWITCH.
+    """
     way = 1.0
     depth = by - stroke
     if -by > depth:
@@ -166,7 +169,10 @@ def end_stop(state, out, by, rate, stroke, stiffness, damping):
 
 @inlined
 def act_along(out, turning, size, ux, uy):
-    """Fill out with a force (N) along a unit vector, or with a torque (N m) if it is ``turning``: see measure."""
+    """Fill out with a force (N) along a unit vector, or a torque (N m) if it is ``turning``.
+
+    See measure.
+    """
     out[FX] = ux * size
     out[FY] = uy * size
     out[TORQUE] = size if turning else 0.0

@@ -41,7 +41,7 @@ MOST_STEPS = 40
 NEARER, CLOSE = 0.999999, 1e-9
 """Part of a square, and of REACH, by which another foot is nearer by more than rounding."""
 AWAY = 0.25
-"""What one metre along the curve counts against one metre off it."""
+"""Weight of one metre along the curve against one metre off it."""
 
 
 @internal

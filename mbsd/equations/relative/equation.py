@@ -121,7 +121,10 @@ else:
 
 @inlined
 def fill_row(out, ux, uy, x, y, arm_ix, arm_iy, arm_jx, arm_jy, jac):
-    """Fill jac (6,) with the row of an equation by its gradient ``out``: (x, y) in axes (ux, uy) of marker i."""
+    """Fill jac (6,) with the row of an equation by its gradient ``out``.
+
+    (x, y) are in axes (ux, uy) of marker i.
+    """
     gx = out[FX] * ux - out[FY] * uy
     gy = out[FX] * uy + out[FY] * ux
     jac[0] = -gx
@@ -134,7 +137,10 @@ def fill_row(out, ux, uy, x, y, arm_ix, arm_iy, arm_jx, arm_jy, jac):
 
 @inlined
 def gamma_of(out, ux, uy, x, y, vx, vy, cx, cy, omega, a_rate):
-    """Return gamma of an equation without f'': d' = (vx, vy), c_j - c_i = (cx, cy), omega of body i, rate of a."""
+    """Return gamma of an equation without f''.
+
+    d' = (vx, vy), c_j - c_i = (cx, cy), omega of body i, rate of a.
+    """
     along = ux * vx + uy * vy
     across = ux * vy - uy * vx
     gamma_x = -(ux * cx + uy * cy + 2.0 * omega * across - omega * omega * x)

@@ -82,7 +82,7 @@ class Way:
         out[:, self.driver, 1] = rate
         return out
 
-    def at(self, times: np.ndarray) -> np.ndarray:
+    def evaluate(self, times: np.ndarray) -> np.ndarray:
         """Return (T, 3) p and its derivatives in time at ``times`` (T,) (s)."""
         if self.driver is None:
             ones = np.ones(len(times))
@@ -150,7 +150,7 @@ class Assembly:
     determinant: np.ndarray
     """(12, d) of the blocks of J."""
 
-    def at(self, p: np.ndarray) -> np.ndarray:
+    def evaluate(self, p: np.ndarray) -> np.ndarray:
         """Return (3, P, 3 nb) q, dq/dp and d2q/dp2 at p (P,)."""
         return np.einsum("pn,knc->kpc", lagrange(self.nodes, p), self.parts)
 
@@ -159,7 +159,7 @@ class Assembly:
         inner = np.abs(self.nodes) < np.abs(self.nodes).max() * 0.99
         probes = 0.5 * np.array([-1.0, 0.0, 1.0]) * np.abs(self.nodes).min()
         fewer = np.einsum("pn,knc->kpc", lagrange(self.nodes[inner], probes), self.parts[:, inner])
-        wrong = self.at(probes) - fewer
+        wrong = self.evaluate(probes) - fewer
         return solver.extent(wrong[0]), solver.extent(wrong[2])
 
     def root(self) -> float | None:
@@ -238,7 +238,7 @@ def assembly_around(solver: Solver, way: Way, pose: np.ndarray, p: float) -> Ass
 def meets(solver: Solver, way: Way, assembly: Assembly) -> bool:
     """Return True if the motion between the poses of an assembly meets the constraints."""
     probes = GAP * np.array([-1.0, -0.3, 0.0, 0.3, 1.0])
-    poses = assembly.at(probes)[0]
+    poses = assembly.evaluate(probes)[0]
     return max(solver.gap(way, pose, float(p)) for pose, p in zip(poses, probes, strict=True)) <= CLOSES
 
 
@@ -274,7 +274,7 @@ def _ladder(first: float, last: float, more: np.ndarray) -> np.ndarray:
 def other_assembly(solver: Solver, way: Way, smooth: Assembly) -> Assembly | None:
     """Return the motion on the assembly that meets ``smooth`` at p = 0; None unless there is just one."""
     p = 2.0 * GAP
-    pose = smooth.at(np.array([p]))[0, 0]
+    pose = smooth.evaluate(np.array([p]))[0, 0]
     scale = np.concatenate([np.ones(3), solver.packed.column_scale()])
     jac = solver.jacobian(way, pose, p)
     left, values, right = np.linalg.svd(jac)

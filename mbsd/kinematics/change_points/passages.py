@@ -52,7 +52,7 @@ class Passage:
 
     way: Way
     time: float
-    """When it is passed (s), or would be if the motion began earlier or went on."""
+    """Time of the passage (s), or the time it would have if the motion began earlier or went on."""
     before: Assembly
     after: Assembly
     start: float
@@ -75,25 +75,25 @@ class Passage:
         """Return q, v, a (T, 3 nb) at ``times`` (T,) near the change point.
 
         Where the motion switches, they are those before it."""
-        way = self.way.at(times)
+        way = self.way.evaluate(times)
         late = (times > self.time) & ~self.is_at(times)
-        q, slope, bend = self.before.at(way[:, 0])
+        q, slope, bend = self.before.evaluate(way[:, 0])
         if self.is_switched and late.any():
-            q[late], slope[late], bend[late] = self.after.at(way[late, 0])
+            q[late], slope[late], bend[late] = self.after.evaluate(way[late, 0])
         rate, second = way[:, 1, None], way[:, 2, None]
         return q, slope * rate, bend * rate * rate + slope * second
 
     def is_at(self, times: np.ndarray) -> np.ndarray:
         """Return (T,) whether the pose at ``times`` (s) is the change point itself, but for rounding."""
-        return np.abs(self.way.at(times)[:, 0]) <= ITSELF
+        return np.abs(self.way.evaluate(times)[:, 0]) <= ITSELF
 
     def is_near(self, times: np.ndarray) -> np.ndarray:
         """Return (T,) whether steps right beyond the gap at ``times`` (s) are those of the passage."""
-        return np.abs(self.way.at(times)[:, 0]) <= FILLED
+        return np.abs(self.way.evaluate(times)[:, 0]) <= FILLED
 
     def covers(self, times: np.ndarray) -> np.ndarray:
         """Return (T,) True for the rising ``times`` (s) around it that stay within ``radius``."""
-        near = np.abs(self.way.at(times)[:, 0]) <= self.radius
+        near = np.abs(self.way.evaluate(times)[:, 0]) <= self.radius
         first, last = int(np.searchsorted(times, self.start, side="right")), int(np.searchsorted(times, self.end))
         while first > 0 and near[first - 1]:
             first -= 1
@@ -166,7 +166,7 @@ class Passages:
         ahead = None if way is None else find_ahead(solver, way, pose)
         if way is None or ahead is None:
             return None
-        p, rate, _ = way.at(np.array([time]))[0] - [ahead, 0.0, 0.0]
+        p, rate, _ = way.evaluate(np.array([time]))[0] - [ahead, 0.0, 0.0]
         way.origin += ahead / way.scale
         assembly = assembly_around(solver, way, pose, p)
         root = None if assembly is None else assembly.root()
@@ -184,10 +184,10 @@ class Passages:
     def _in_time(self, row: int, way: Way, assembly: Assembly) -> Passage:
         """Return when the motion is near the change point, and on which assembly it goes on."""
         known = self.steps.times[: row + 1]
-        outside = np.flatnonzero(np.abs(way.at(known)[:, 0]) >= EDGE)
+        outside = np.flatnonzero(np.abs(way.evaluate(known)[:, 0]) >= EDGE)
         start = float(known[outside[-1]]) if len(outside) else -np.inf
         looks = self._looks(way, max(start, float(known[0])))
-        p = way.at(looks)[:, 0]
+        p = way.evaluate(looks)[:, 0]
         inside = np.flatnonzero(np.abs(p) < EDGE)
         if not len(inside):
             time = _meeting_time(way, float(known[-1]))
@@ -234,7 +234,7 @@ class Passages:
         They are dense at first.
         """
         end = float(self.steps.times[-1])
-        _, rate, second = way.at(np.array([start]))[0]
+        _, rate, second = way.evaluate(np.array([start]))[0]
         step = FINEST * GAP / max(abs(rate), np.sqrt(GAP * abs(second)), GAP / max(end - start, 1e-300))
         growing = GROWTH ** np.clip(np.arange(MOST_LOOKS) - EVEN, 0, None)
         looks = start + np.append(0.0, step * np.cumsum(growing))
@@ -243,7 +243,7 @@ class Passages:
 
 def _meeting_time(way: Way, time: float) -> float:
     """Return when p is 0 if it goes on as it goes at ``time``, forward or backward (s)."""
-    p, rate, _ = way.at(np.array([time]))[0]
+    p, rate, _ = way.evaluate(np.array([time]))[0]
     return time - p / rate if rate else time
 
 
@@ -251,14 +251,14 @@ def _crossing_time(way: Way, looks: np.ndarray) -> float:
     """Return the time at which p is 0, or nearest to it; beyond ``looks`` (T,) if it leads there (s)."""
     ends = float(looks[0]), float(looks[-1])
     for _ in range(8):
-        p = way.at(looks)[:, 0]
+        p = way.evaluate(looks)[:, 0]
         crossed = np.flatnonzero(p[:-1] * p[1:] <= 0.0)
         k = int(crossed[0]) if len(crossed) else int(np.argmin(np.abs(p)))
         first, last = looks[k if len(crossed) else max(k - 1, 0)], looks[min(k + 1, len(looks) - 1)]
         if not last > first:
             break
         looks = np.linspace(first, last, 33)
-    time = float(looks[int(np.argmin(np.abs(way.at(looks)[:, 0])))])
+    time = float(looks[int(np.argmin(np.abs(way.evaluate(looks)[:, 0])))])
     return _meeting_time(way, time) if time in ends else time
 
 
@@ -273,10 +273,10 @@ VANISHES = 1e-6
 def sides_of(passage: Passage, times: np.ndarray) -> list[Side]:
     """Return poses beside a change point for efforts at rising ``times`` (T,) (s), with their indices."""
     rows = times[passage.covers(times)]
-    rows = rows[np.abs(passage.way.at(rows)[:, 0]) < NEAR]
+    rows = rows[np.abs(passage.way.evaluate(rows)[:, 0]) < NEAR]
     if not len(rows):
         return []
-    _, rate, second = passage.way.at(np.array([passage.time]))[0]
+    _, rate, second = passage.way.evaluate(np.array([passage.time]))[0]
     pace = max(abs(rate), np.sqrt(0.5 * NEAR * abs(second)))
     if not pace > 0.0:
         return [Side(passage.time, np.zeros(0), rows)]
@@ -314,7 +314,7 @@ def determinant_of(passage: Passage, times: np.ndarray) -> np.ndarray:
     ``times`` are in s.
     """
     assembly = passage.after if passage.is_switched and times[0] > passage.time else passage.before
-    weights = lagrange(assembly.nodes, np.append(passage.way.at(times)[:, 0], 0.0))
+    weights = lagrange(assembly.nodes, np.append(passage.way.evaluate(times)[:, 0], 0.0))
     values = weights @ assembly.determinant
     vanishing = np.abs(values[-1]) < VANISHES * np.abs(assembly.determinant).max(axis=0)
     return np.prod(values[:-1, vanishing], axis=1)

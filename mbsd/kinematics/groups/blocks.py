@@ -19,7 +19,7 @@ from mbsd.equations.system import constant
 BLOCK, TRAIN = 9, 10
 """Kinds after those of groups.py. TRAIN: a pinned body whose angle is a sum of known angles (kinds/train.py)."""
 PIN, SLIDE, WELD, FREE = range(4)
-"""How a body hangs."""
+"""Codes of how a body hangs."""
 UNKNOWNS = (1, 1, 0, 3)
 """Number of unknowns of each of these."""
 ALONG, ACROSS, TURNED, APART, SPECIAL = range(5)
@@ -61,7 +61,7 @@ class Blocks(NamedTuple):
     train_body: Any
     """Bodies whose angles count to a train's."""
     share: Any
-    """How much they count."""
+    """Weights of the equations."""
     unknown: Any
     """(3, 12) scratch: unknowns, their rates and accelerations."""
     jac: Any

@@ -225,7 +225,7 @@ def _value(case, e, law, column):
 
 
 value_of = alternatives({PoseAlone: _value_alone, AlongLaws: _value_along, PerCoordinate: _value})
-"""What the law, or the coordinate where there is one, says of group e."""
+"""Value of the law of group e, or of its coordinate where there is one."""
 
 
 @inlined

@@ -1,7 +1,8 @@
-"""Groups solved in closed form, their kinds and joints: driven bodies, Assur groups of one or two bodies.
+"""Groups solved in closed form, their kinds and joints: driven bodies, Assur groups.
 
-A group has bodies A and B (or A alone), which stand on known bodies K1 and K2. Each kind has a file in kinds/, which
-says what its numbers are; arms are from centres of mass, in body axes (m). Joints have letters: see LETTERS in plan.py.
+An Assur group has one or two bodies. A group has bodies A and B (or A alone), which stand on known bodies K1 and K2.
+Each kind has a file in kinds/, which says what its numbers are; arms are from centres of mass, in body axes (m). Joints
+have letters: see LETTERS in plan.py.
 
 All numbers of groups but the branch are linear in the places of the markers, which mbsd/kinematics/design_sweeps.py
 relies on.
@@ -162,7 +163,7 @@ class GroupKind:
     follows: tuple[tuple[int, int, int], ...] = ()
     """Bodies that turn with another: 0 for A or 1 for B, column of the constant angle, column of the other body."""
     watched: int = 0
-    """How many of its bodies a motion watches, so that they turn little from pose to pose."""
+    """Number of its bodies that a motion watches, so that they turn little from pose to pose."""
 
 
 def line(x: np.ndarray, y: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:

@@ -188,7 +188,7 @@ class Hanging(NamedTuple):
     rows: list[int]
     """Rows of J: all that hold these bodies."""
     equations: list[int]
-    """Those by which no body hangs; as many as unknowns."""
+    """Equations that hold no body; as many as unknowns."""
 
 
 def fixed_bodies(packed: Packed, known: Collection[int], left: Sequence[int], pattern: np.ndarray) -> set[int] | None:
@@ -208,7 +208,7 @@ def fixed_bodies(packed: Packed, known: Collection[int], left: Sequence[int], pa
 
 
 _FIXED: Kept[tuple[int, ...] | None] = Kept()
-"""By all that they depend on."""
+"""Parts by all that they depend on."""
 
 
 def _fixed(own: np.ndarray, unknown: Sequence[int], arms: Sequence[int]) -> tuple[int, ...] | None:

@@ -29,10 +29,11 @@ LETTERS = {
     ("distance",): "L",
     ("along",): "A",
 }
-"""How groups call joints and drivers, by their constraints: pin, slide, weld, slot, driver of an angle, rod or
-actuator, driver along an axis."""
+"""Letters of joints and drivers in groups, by their constraints: pin, slide, weld, slot, driver of an angle, rod or
+actuator, driver along an axis.
+"""
 DRIVERS = "DA"
-"""What only a driver is made of; a distance is a rod or an actuator."""
+"""Letters that only a driver has; a distance is a rod or an actuator."""
 
 
 def plan_groups(packed: Packed, q0: np.ndarray, redundant_rows: int) -> Groups | None:
@@ -48,7 +49,7 @@ def plan_groups(packed: Packed, q0: np.ndarray, redundant_rows: int) -> Groups |
 
 
 _GROUPS: Kept[Groups | None] = Kept()
-"""By all that they depend on."""
+"""Plans by all that they depend on."""
 
 
 def _planned(packed: Packed, q0: np.ndarray) -> Groups | None:

@@ -33,7 +33,7 @@ KINDS = (
 )
 NAMES = tuple(kind.name for kind in KINDS)
 BRANCH = {kind.code: kind.branch for kind in KINDS if kind.branch is not None}
-"""Where the sign of the assembly stands."""
+"""Index of the sign of the assembly."""
 
 
 def tables_of(taken: Sequence[Made]) -> Groups:

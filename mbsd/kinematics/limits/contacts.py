@@ -87,8 +87,8 @@ def refuse_resting(m: Model, packed: Packed, start: np.ndarray, q: np.ndarray, s
             begun = said or f"{m.name}: the pose that balances is"
             raise EquilibriumError(
                 f"{begun} {-gap.value[1]:.3g} {gap.unit} beyond '{gap.name}'. Rest on a "
-                "contact or at a limit is not looked for: simulate with damping until it rests, or start nearer to a "
-                "pose that is free of it."
+                "contact or at a limit is not searched for. Simulate with damping until it rests, or start nearer to a "
+                "pose without contact."
             )
 
 

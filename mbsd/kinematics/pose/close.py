@@ -33,7 +33,7 @@ CLOSED = 1e-10
 """Largest residual of a closed pose, in sizes (m) and rad."""
 ATTEMPTS = 24
 MANY_ROWS = 100
-"""From here on the shortest step is found without singular values where rows are well apart."""
+"""Number of rows from which on the shortest step is found without singular values where rows are well apart."""
 WELL_CONDITIONED = 1e-4
 LONGEST_STEP = 0.5
 """Longest Gauss-Newton step, in sizes and rad."""
@@ -198,9 +198,9 @@ def close_holding(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray) ->
 
 
 def damped(step: np.ndarray) -> tuple[np.ndarray, float]:
-    """Return ``step`` (n,) no longer than ``LONGEST_STEP``, and how far it moves or turns a body, in sizes or rad.
+    """Return ``step`` (n,) no longer than ``LONGEST_STEP``, and how far it moves or turns a body.
 
-    The world's axes do not matter.
+    The latter is in sizes or rad. The world's axes do not matter.
     """
     x, y, angle = step.reshape(-1, 3).T
     longest = float(np.maximum(np.hypot(x, y), np.abs(angle)).max(initial=0.0))

@@ -18,7 +18,7 @@ import numpy as np
 RANK_TOLERANCE = 1e-8
 """A row that adds less than this part of itself to the others repeats them."""
 SMALL = 4000
-"""Up to so many numbers of J, its rank is kept for the next call with the same J."""
+"""Number of entries of J up to which its rank is kept for the next call with the same J."""
 ALIGNED = 1e-12
 """Part of u across an axis below which it is that axis."""
 
@@ -49,7 +49,10 @@ def half_held(chosen: Sequence[int], places: Sequence[tuple[int, int]]) -> list[
 
 
 def free_direction(before: np.ndarray, pair: np.ndarray) -> np.ndarray:
-    """Return u (..., 2): the direction in rows ``pair`` (..., 2, n) that ``before`` (..., r, n) leave most."""
+    """Return u (..., 2): the direction in rows ``pair`` that other rows leave most free.
+
+    ``pair`` is (..., 2, n), the rows ``before`` are (..., r, n).
+    """
     basis = np.linalg.qr(np.swapaxes(before, -1, -2))[0]
     left = pair - (pair @ basis) @ np.swapaxes(basis, -1, -2)
     u = np.linalg.eigh(left @ np.swapaxes(left, -1, -2))[1][..., -1]

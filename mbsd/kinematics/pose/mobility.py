@@ -32,7 +32,7 @@ BETTER = 4.0
 _MOBILITY: Kept[Mobility] = Kept()
 _ROWS: Kept[tuple[int, ...]] = Kept()
 _CHOSEN: Kept[tuple[int, ...]] = Kept()
-"""By all that J at a pose depends on."""
+"""Ranks by all that J at a pose depends on."""
 
 
 def joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:

@@ -30,7 +30,7 @@ class Twin:
     """Two ways to close."""
 
     body: str
-    """That differs most."""
+    """Body that differs most."""
     taken: float
     """Its angle (rad)."""
     other: float

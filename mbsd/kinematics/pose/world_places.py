@@ -149,8 +149,8 @@ def _known_frame(m: Model, name: str) -> np.ndarray:
             say = f"start_near({name}=degrees)" if free == ["angle"] else f"start_near({name}=(x, y, degrees))"
             verb = "is" if len(free) == 1 else "are"
             raise ModelError(
-                f"{m.name}: {name}.at_world: where '{name}' is at the start is not known yet, its {' and '.join(free)} "
-                f"{verb} free; first say {say}, or add the joints, drivers and starts that place it"
+                f"{m.name}: {name}.at_world: the start of '{name}' is not known yet: its {' and '.join(free)} "
+                f"{verb} free. First give {say}, or add the joints, drivers and starts that place it"
             )
     return _frames(packed, q)[b]
 

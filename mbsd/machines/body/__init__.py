@@ -1,1 +1,1 @@
-"""The human body as a machine: segment tables, a figure of given height and mass, exercises with a barbell."""
+"""The human body as a mechanism: segment tables, figures of a height and mass, barbell exercises."""

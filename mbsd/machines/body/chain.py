@@ -1,4 +1,4 @@
-"""The chain of a lifter: foot, shank, thigh and trunk with their joints and guides, the barbell, one repetition.
+"""The chain of a lifter: foot, shank, thigh and trunk, their joints, the barbell, one repetition.
 
 Angles of joints are counted as in anatomy, 0 in standing:
 
@@ -49,7 +49,10 @@ class Lifter:
 
 
 def add_lifter(m: Mechanism, figure: Figure, arms: MassProperties | None) -> Lifter:
-    """Add foot, shank, thigh and trunk, joined, with moments at the joints; ``arms`` are fixed to the trunk."""
+    """Add foot, shank, thigh and trunk, joined, with moments at the joints.
+
+    ``arms`` are fixed to the trunk.
+    """
     trunk = figure.limb("trunk")
     if arms is not None:
         trunk = combined((trunk, arms))
@@ -74,7 +77,10 @@ def add_body(m: Mechanism, name: str, given: MassProperties, length: float | Non
 
 
 def add_barbell(m: Mechanism, load: float, carrier: Body, x: float, y: float) -> Body:
-    """Return a barbell of ``load`` (kg) on the body ``carrier`` at (x, y) of its frame (m); its middle is traced."""
+    """Return a barbell of ``load`` (kg) on the body ``carrier`` at (x, y) of its frame (m).
+
+    Its middle is traced.
+    """
     mass = not_below(m.name, "load", load, 0.0, "kg")
     barbell = m.body("barbell", mass, (0.0, 0.0), mass * BAR_INERTIA)
     m.revolute("bar", carrier.at(x, y), barbell.origin)
@@ -134,7 +140,7 @@ class Tempo:
         return self.up, self.up + self.hold, self.up + self.hold + self.down
 
     def part(self, time: float) -> tuple[float, float, float]:
-        """Return the part of the way from bottom to top at a time (s), with rate (1/s) and acceleration (1/s^2)."""
+        """Return the part of the rise at a time (s), its rate (1/s) and acceleration (1/s^2)."""
         t = time % self.period
         _, begin, end = self.breaks
         if t >= end:
@@ -147,7 +153,10 @@ class Tempo:
 
 
 def repetition(bottom: float, top: float, tempo: Tempo) -> Motion:
-    """Return the law (rad or m) of a repetition that begins at the bottom; constant if both ends are the same."""
+    """Return the law (rad or m) of a repetition that begins at the bottom.
+
+    It is constant if both ends are the same.
+    """
     way = top - bottom
     if way == 0.0:
         from mbsd.model.laws.formulas import polynomial

@@ -23,7 +23,10 @@ GRIP = 0.5
 
 @dataclass(frozen=True)
 class Figure:
-    """Height (m), mass (kg) and the table its segments are from. Raises ModelError for what is no height or mass."""
+    """A person: height (m), mass (kg) and the table of segments.
+
+    Raises ModelError for an invalid height or mass.
+    """
 
     height: float = 1.78
     mass: float = 80.0
@@ -36,7 +39,10 @@ class Figure:
             raise ModelError(f"figure: the table is a {type(self.table).__name__}; give WINTER or another SegmentTable")
 
     def length(self, limb: str) -> float:
-        """Return a limb's length between its joints (m), by LENGTHS of segments.py. Raises ModelError if unknown."""
+        """Return a limb's length between its joints (m), by LENGTHS of segments.py.
+
+        Raises ModelError if unknown.
+        """
         if limb not in LENGTHS:
             raise ModelError(f"figure: there is no length '{limb}'; known: {', '.join(LENGTHS)}")
         return LENGTHS[limb] * self.height
@@ -144,7 +150,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class MassProperties:
-    """Mass properties of a rigid body in the plane: mass (kg), centre of mass (m), inertia about it (kg m^2)."""
+    """Mass properties of a plane rigid body: mass (kg), centre of mass (m), inertia about it (kg m^2)."""
 
     mass: float
     com: tuple[float, float]

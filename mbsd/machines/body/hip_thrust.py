@@ -55,7 +55,10 @@ class Bench:
     """In the trunk's frame: along it from the hip, and behind it."""
 
     def posture(self, figure: Figure, flexion: float) -> Posture:
-        """Return the bodies at a flexion of the hip (rad), the knee up. Raises ModelError where they do not reach."""
+        """Return the bodies at a flexion of the hip (rad), the knee up.
+
+        Raises ModelError where they do not reach.
+        """
         shank, ankle = figure.length("shank"), 1j * figure.length("ankle")
         knee = self.to_knee(figure, flexion)
         way = ankle - self.edge
@@ -63,7 +66,7 @@ class Bench:
         if not abs(abs(knee) - shank) < distance < abs(knee) + shank:
             raise ModelError(
                 f"hip thrust: at a flexion of {math.degrees(flexion):.4g} degrees the ankle is {distance:.3g} m from "
-                f"the edge of the pad, but trunk, thigh and shank reach from {abs(abs(knee) - shank):.3g} to "
+                f"the edge of the pad. Trunk, thigh and shank reach from {abs(abs(knee) - shank):.3g} to "
                 f"{abs(knee) + shank:.3g} m; change distance, bench or flexion"
             )
         cosine = (distance**2 + abs(knee) ** 2 - shank**2) / (2 * distance * abs(knee))
@@ -89,15 +92,15 @@ def hip_thrust(
     tempo: Tempo | None = None,
     name: str = "hip_thrust",
 ) -> Mechanism:
-    """Return a figure that thrusts a barbell of ``load`` (kg) up; :func:`mbsd.machines.body.lift.lifted` solves it.
+    """Return a figure that thrusts a barbell of ``load`` (kg) up.
 
-    ``flexion``: of the hip at the bottom and at the top (DEGREES). ``bench``: height of the pad's edge (m);
-    ``distance``: from it to the ankle along the floor (m), by default such that the shank is upright at the top.
-    ``contact``: of the back with the edge, along the trunk from the hip and behind its axis (m). ``bar``: of the
-    barbell's middle, along the trunk from the hip and in front of its axis (m). ``pressure``: where the floor pushes,
-    in front of the ankle (m). ``grip``: friction of the pad, of its normal force, positive towards the head; the
-    default gives the knee about what was measured (docs/hip_thrust.md). Raises ModelError, with the remedy, for what
-    the figure cannot reach and for a floor that pushes beside the foot.
+    :func:`mbsd.machines.body.lift.lifted` solves it. ``flexion``: of the hip at the bottom and at the top (DEGREES).
+    ``bench``: height of the pad's edge (m); ``distance``: from it to the ankle along the floor (m), by default such
+    that the shank is upright at the top. ``contact``: of the back with the edge, along the trunk from the hip and
+    behind its axis (m). ``bar``: of the barbell's middle, along the trunk from the hip and in front of its axis (m).
+    ``pressure``: where the floor pushes, in front of the ankle (m). ``grip``: friction of the pad, of its normal force,
+    positive towards the head; the default gives the knee about what was measured (docs/hip_thrust.md). Raises
+    ModelError, with the remedy, for what the figure cannot reach and for a floor that pushes beside the foot.
     """
     figure = Figure() if figure is None else figure
     tempo = Tempo() if tempo is None else tempo
@@ -137,7 +140,10 @@ def placed_on_bench(
     top: float,
     name: str = "hip_thrust",
 ) -> Bench:
-    """Return the edge of the pad, and the place of the back on it; see :func:`hip_thrust`. Raises ModelError."""
+    """Return the edge of the pad, and the place of the back on it.
+
+    See :func:`hip_thrust`. Raises ModelError.
+    """
     height = not_below(name, "bench", bench, 0.0, "m")
     along, behind = (
         (CONTACT * figure.length("trunk"), CHEST * figure.height)

@@ -1,4 +1,4 @@
-"""A lift solved: the moments that make its motion, the forces of floor and pad, the way of the bar, the work.
+"""A solved lift: moments that make its motion, forces of floor and pad, path of the bar, work.
 
 The guides of a lift give its motion; the moments at the joints that make the same motion follow by inverse dynamics.
 """
@@ -22,7 +22,10 @@ JOINTS = {"hip": "hip_extensors", "knee": "knee_extensors", "ankle": "plantarfle
 
 @dataclass(frozen=True, eq=False)
 class Lift:
-    """One repetition of a lift; (T,) or (T, 2) arrays in SI units, axes of ground. Both sides are taken together."""
+    """One repetition of a lift; (T,) or (T, 2) arrays in SI units, axes of ground.
+
+    Both sides are taken together.
+    """
 
     solution: Solution
     """The motion with the moments and reactions; its guides give nothing."""
@@ -33,7 +36,9 @@ class Lift:
         return self.solution.t
 
     def moment(self, joint: str) -> np.ndarray:
-        """Return (T,) net moment (N m) at ``hip``, ``knee``, ``ankle`` or ``shoulder``, positive if it extends it.
+        """Return (T,) net moment (N m) at ``hip``, ``knee``, ``ankle`` or ``shoulder``.
+
+        It is positive if it extends the joint.
 
         Raises ModelError for another joint, and for one that this lift does not move by itself.
         """
@@ -46,7 +51,10 @@ class Lift:
         return self.solution.force(self._named(joint)).power
 
     def work(self, joint: str) -> tuple[float, float]:
-        """Return the work (J) that the muscles of a joint give and absorb in a repetition; the second is at most 0."""
+        """Return the work (J) that a joint's muscles give and absorb in a repetition.
+
+        The second is at most 0.
+        """
         power = self.power(joint)
         given, taken = np.maximum(power, 0.0), np.minimum(power, 0.0)
         return float(np.trapezoid(given, self.t)), float(np.trapezoid(taken, self.t))
@@ -102,7 +110,10 @@ class Lift:
 
 
 def lifted(m: Mechanism, steps: int = 360) -> Lift:
-    """Solve a repetition of a lift in ``steps`` equal steps. Raises what :func:`with_moments` and ``sweep`` raise."""
+    """Solve a repetition of a lift in ``steps`` equal steps.
+
+    Raises what :func:`with_moments` and ``sweep`` raise.
+    """
     return Lift(with_moments(m, m.sweep(steps=steps)))
 
 
@@ -129,9 +140,10 @@ def with_moments(m: Mechanism, motion: Solution) -> Solution:
 
 
 def peaks(m: Mechanism, figure: Figure, steps: int = 180) -> dict[str, float]:
-    """Return a study's measures: largest moments (N m/kg of body mass), floor and pad (N), travel (m), work (J).
+    """Return a study's measures: largest moments (N m/kg), floor and pad (N), travel (m), work (J).
 
-    ``slip`` is the largest part of its normal force that the floor must hold by friction.
+    Moments are for each kg of body mass. ``slip`` is the largest part of its normal force that the floor must hold by
+    friction.
     """
     lift = lifted(m, steps)
     out = {joint: float(lift.moment(joint).max()) / figure.mass for joint in ("hip", "knee", "ankle")}

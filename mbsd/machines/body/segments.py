@@ -55,11 +55,14 @@ class Segment:
 
 @dataclass(frozen=True)
 class SegmentTable:
-    """The segments of a body by limb; those of one limb lie along one line and do not move against each other."""
+    """The segments of a body by limb.
+
+    Those of one limb lie along one line and do not move against each other.
+    """
 
     name: str
     foot: Segment
-    """From the ankle to the ball of the foot (Winter), or from heel to toe (de Leva)."""
+    """Length from the ankle to the ball of the foot (Winter), or from heel to toe (de Leva)."""
     from_heel: bool
     """True if the foot's reference line is that from heel to toe."""
     shank: tuple[Segment, ...]
@@ -137,6 +140,6 @@ DE_LEVA_WOMEN = SegmentTable(
         Segment(0.0056, 0.7474, 0.454, _TO_METACARPAL, start=LENGTHS["forearm"]),
     ),
 )
-"""As :data:`DE_LEVA_MEN`."""
+"""Table like :data:`DE_LEVA_MEN`."""
 
 TABLES: tuple[SegmentTable, ...] = (WINTER, DE_LEVA_MEN, DE_LEVA_WOMEN)

@@ -31,7 +31,7 @@ from mbsd.model.body import Body
 from mbsd.model.laws.formulas import polynomial
 
 SLOWER = Tempo(up=1.5)
-"""By default: the bar goes twice as far as in a hip thrust."""
+"""Default tempo: the bar goes twice as far as in a hip thrust."""
 ELBOWS_DOWN = 1
 """Side of the elbows of arms that hold a bar on the back; see :meth:`mbsd.machines.body.figure.Figure.arms`."""
 
@@ -47,11 +47,12 @@ def squat(
     tempo: Tempo | None = None,
     name: str = "squat",
 ) -> Mechanism:
-    """Return a figure that squats with a barbell of ``load`` (kg); solve it with mbsd.machines.body.lift.lifted.
+    """Return a figure that squats with a barbell of ``load`` (kg).
 
-    ``shank``, ``thigh``: leans at the bottom and at the top (DEGREES). ``bar``: of the barbell's middle, along the
-    trunk from the hip and behind its axis (m), by default on the shoulders. ``line``: of the bar in front of the ankle
-    (m), by default over the middle of the foot. Raises ModelError, with the remedy, where the trunk does not reach it.
+    Solve it with mbsd.machines.body.lift.lifted. ``shank``, ``thigh``: leans at the bottom and at the top (DEGREES).
+    ``bar``: of the barbell's middle, along the trunk from the hip and behind its axis (m), by default on the shoulders.
+    ``line``: of the bar in front of the ankle (m), by default over the middle of the foot. Raises ModelError, with the
+    remedy, where the trunk does not reach it.
     """
     figure = Figure() if figure is None else figure
     tempo = SLOWER if tempo is None else tempo
@@ -153,7 +154,10 @@ def _hanging_arms(m: Mechanism, lifter: Lifter) -> Body:
 
 
 def _lean(bar: complex, ahead: float, name: str) -> float:
-    """Return the trunk's lean (rad) that brings the bar, at ``bar`` of its frame, ``ahead`` (m) in front of the hip."""
+    """Return the trunk's lean (rad) that brings the bar ``ahead`` (m) of the hip.
+
+    The bar is at ``bar`` of the trunk's frame.
+    """
     if abs(ahead) >= abs(bar):
         raise ModelError(
             f"{name}: the bar's line is {ahead:.3g} m in front of the hip, but the bar is {abs(bar):.3g} m from it; "

@@ -37,7 +37,7 @@ NARROWEST = 30.0
 
 @dataclass(frozen=True)
 class Family:
-    """V engines of all bank angles: their throws (degrees), and whether each throw has one pin or two split pins."""
+    """V engines of all bank angles: their throws (degrees), each with one pin or two split pins."""
 
     name: str
     throws: tuple[float, ...]
@@ -72,7 +72,10 @@ FAMILIES = (
 
 @dataclass(frozen=True, eq=False)
 class Left:
-    """Largest forces and couples on the turn by order, (A, K): in m r w^2, and times the spacing of the throws."""
+    """Largest free forces and couples over the turn by order, (A, K).
+
+    They are in m r w^2, and times the spacing of the throws.
+    """
 
     force: np.ndarray
     couple: np.ndarray

@@ -74,7 +74,9 @@ class Block:
 def mounts_of_frequency(
     mass: float, frequency: float, at: Sequence[tuple[float, float]], damping_ratio: float = 0.1
 ) -> tuple[Mount, ...]:
-    """Return equal mounts at places ``at`` (m) on which a mass (kg) has a natural frequency (Hz) along x and y.
+    """Return equal mounts at places ``at`` (m) that give a mass (kg) a natural frequency (Hz).
+
+    It is along x and y.
 
     Raises ModelError for numbers that are not positive.
     """
@@ -114,7 +116,10 @@ class MountResponse:
     """Natural frequencies, damping and shapes on the mounts, by rising frequency."""
 
     def largest_displacement(self) -> np.ndarray:
-        """Return (S,) largest distance of the shaft's axis from its mean place in a cycle (m), all orders together."""
+        """Return (S,) largest distance of the shaft's axis from its mean in a cycle (m).
+
+        All orders count together.
+        """
         return np.linalg.norm(self._cycle(self.displacement)[:, :, :2], axis=2).max(axis=1)
 
     def largest_angle(self) -> np.ndarray:
@@ -122,7 +127,10 @@ class MountResponse:
         return np.abs(self._cycle(self.displacement)[:, :, 2]).max(axis=1)
 
     def largest_force(self) -> np.ndarray:
-        """Return (S,) largest force of all mounts on ground beside its mean in a cycle (N), all orders together."""
+        """Return (S,) largest force of all mounts on ground about its mean in a cycle (N).
+
+        All orders count together.
+        """
         return np.linalg.norm(self._cycle(self.force)[:, :, :2], axis=2).max(axis=1)
 
     def _cycle(self, amplitude: np.ndarray) -> np.ndarray:
@@ -134,11 +142,11 @@ class MountResponse:
 def mount_response(
     m: Mechanism, speeds: Sequence[float] | np.ndarray, orders: Sequence[float] | None = None
 ) -> MountResponse:
-    """Return the steady vibration of an ``engine(..., block=...)`` on its mounts at ``speeds`` (rad/s), linearised.
+    """Return the steady linearised vibration of an engine on its mounts at ``speeds`` (rad/s).
 
-    ``orders``: periods in a turn of the shaft, whole numbers or, with gas of four strokes, halves; by default all up to
-    8. Raises ModelError for an engine without a block or without a motor, for speeds that are not positive and orders
-    that its cycle does not have.
+    The engine is an ``engine(..., block=...)``. ``orders``: periods in a turn of the shaft, whole numbers or, with gas
+    of four strokes, halves; by default all up to 8. Raises ModelError for an engine without a block or without a motor,
+    for speeds that are not positive and orders that its cycle does not have.
     """
     what = f"{m.name}: mount_response"
     if "block" not in m.bodies:

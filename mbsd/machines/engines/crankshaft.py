@@ -39,7 +39,7 @@ def crank_sizes(name: str, bore: float, stroke: float, rod: float) -> tuple[floa
     if rod <= throw:
         raise ModelError(
             f"engine '{name}': the rod of {1000 * rod:g} mm is no longer than the throw of {1000 * throw:g} mm (half "
-            f"the stroke), so the shaft cannot turn; rods have 1.5 to 2 strokes, here {1500 * stroke:g} mm or more"
+            f"the stroke), so the shaft cannot turn. Rods have 1.5 to 2 strokes, here {1500 * stroke:g} mm or more"
         )
     return bore, throw, rod
 
@@ -85,7 +85,10 @@ def crankshaft(
 
 
 def _of_points(m: Mechanism, name: str, points: np.ndarray, spin: float) -> Body:
-    """Return the body of point masses (n, 4) of m, x, y, z, and an inertia that turns about the origin beside them."""
+    """Return the body of point masses (n, 4) of m, x, y, z, and an inertia beside them.
+
+    The inertia turns about the origin.
+    """
     mass, at, z = points[:, 0], points[:, 1:3], points[:, 3]
     total = float(mass.sum())
     if total == 0.0:

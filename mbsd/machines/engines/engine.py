@@ -75,7 +75,7 @@ def engine(
     block: Block | None = None,
     name: str | None = None,
 ) -> Mechanism:
-    """Return an engine of a layout by name ("V8", "I4", "flat-6", "radial-5", ...) or of a :class:`Layout`.
+    """Return an engine of a layout by name ("V8", "I4", "flat-6", "radial-5", ...) or :class:`Layout`.
 
     ``bore``, ``stroke``, ``rod`` (m, between pin and wrist pin); ``spacing`` of neighbouring throws along the shaft (m,
     1.2 bores by default); ``angle``, ``throws``, ``split`` (degrees): those of :func:`named`; ``bank_offset``: how far
@@ -283,7 +283,7 @@ def _places(plan: Layout, name: str, spacing: float, bank_offset: float | None, 
             most = room / max(0.5 * (len(groups[before]) + len(groups[after])) - 1.0, 0.5)
             raise ModelError(
                 f"engine '{name}': with a bank_offset of {1000 * apart:.4g} mm rod {first + 1} does not stand before "
-                f"rod {second + 1} of the next throw, {room:.4g} mm along the shaft; make it less than {most:.4g} mm"
+                f"rod {second + 1} of the next throw, {room:.4g} mm along the shaft. Make it less than {most:.4g} mm"
             )
     return z
 

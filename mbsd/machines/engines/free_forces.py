@@ -84,17 +84,17 @@ LONGEST = 0.98
 
 
 def piston_harmonics(ratio: float, count: int = 8, offset: float = 0.0) -> np.ndarray:
-    """Return (count,) complex A_n e^(i d_n) of orders 1 .. count, in units of r w^2; real where ``offset`` is 0.
+    """Return (count,) complex A_n e^(i d_n) of orders 1 .. count, in units of r w^2.
 
-    ``ratio``: crank radius over length of the rod, r / l. ``offset``: of the cylinder from the shaft over the crank
-    radius, e / r, positive towards where the throw is at phi = 90 degrees. Raises ModelError for a rod that does not
-    reach.
+    They are real where ``offset`` is 0. ``ratio``: crank radius over length of the rod, r / l. ``offset``: of the
+    cylinder from the shaft over the crank radius, e / r, positive towards where the throw is at phi = 90 degrees.
+    Raises ModelError for a rod that does not reach.
     """
     reach = ratio * (1.0 + abs(offset))
     if not (ratio >= 0.0 and reach <= LONGEST):
         raise ModelError(
-            f"engine: the crank radius is {ratio:g} of the rod's length and the offset {offset:g} of the radius; "
-            f"radius and offset together must stay below {LONGEST:g} of the rod, so take a longer one"
+            f"engine: the crank radius is {ratio:g} of the rod's length and the offset {offset:g} of the radius. "
+            f"Together they must stay below {LONGEST:g} of the rod: use a longer rod"
         )
     phi = np.linspace(0.0, 2 * math.pi, SAMPLES, endpoint=False)
     # sqrt(1 - s^2) - 1 without the cancellation that small ratios would suffer from.

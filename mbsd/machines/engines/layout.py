@@ -1,4 +1,4 @@
-"""Layouts of engines: where cylinders and throws are, by lists of angles or by the names that engines go by.
+"""Layouts of engines: places of cylinders and throws, by lists of angles or by usual names.
 
 Angles are counted counter-clockwise, as the shaft turns, seen along it against the z axis (rad). The bank of a
 cylinder is 0 where it stands upright, along y; a throw is 0 where it points up at the start, so that a piston is at its
@@ -61,7 +61,7 @@ class Layout:
 
 
 def layout(name: str, banks: Sequence[float], throws: Sequence[float], z: Sequence[float] | None = None) -> Layout:
-    """Return an engine of N cylinders from lists in DEGREES: bank and throw of each, and its place along the shaft.
+    """Return an engine of N cylinders from lists in DEGREES: bank, throw and place along the shaft.
 
     ``z`` counts spacings; by default the cylinders stand one behind the other, and the middle is 0. Raises ModelError
     for lists of different lengths and what is no number.
@@ -95,7 +95,7 @@ INLINE_THROWS: dict[int, tuple[float, ...]] = {
     6: (0, 120, 240, 240, 120, 0),
     8: (0, 90, 270, 180, 180, 270, 90, 0),
 }
-"""By the number of throws: those that are built most."""
+"""Throws by their number: the layouts that are built most."""
 
 
 def inline(throws: Sequence[float]) -> Layout:
@@ -104,10 +104,10 @@ def inline(throws: Sequence[float]) -> Layout:
 
 
 def vee(angle: float, throws: Sequence[float], split: float = 0.0) -> Layout:
-    """Return two banks ``angle`` apart, two rods side by side on each throw; 1, 3, 5 in the right-hand bank.
+    """Return two banks ``angle`` apart, two rods side by side on each throw.
 
-    ``split``: how far the pin of the left-hand cylinder of a throw is ahead of that of the right-hand one;
-    :func:`even_split` is the one with which the cylinders fire at equal intervals.
+    Cylinders 1, 3, 5 are in the right-hand bank. ``split``: how far the pin of the left-hand cylinder of a throw is
+    ahead of that of the right-hand one; :func:`even_split` is the one with which the cylinders fire at equal intervals.
     """
     count = len(throws)
     banks = [side * angle / 2 for _ in throws for side in (-1, 1)]
@@ -117,7 +117,10 @@ def vee(angle: float, throws: Sequence[float], split: float = 0.0) -> Layout:
 
 
 def even_split(angle: float, cylinders: int) -> float:
-    """Return the split with which the two cylinders of a throw fire one interval of a four-stroke engine apart."""
+    """Return the split with which the two cylinders of a throw fire evenly.
+
+    They fire one interval of a four-stroke engine apart.
+    """
     return angle - 720.0 / cylinders
 
 
@@ -151,7 +154,7 @@ V_THROWS: dict[int, tuple[float, ...]] = {
     10: INLINE_THROWS[5],
     12: INLINE_THROWS[6],
 }
-"""By the number of cylinders: those that are built most."""
+"""Banks by the number of cylinders: the layouts that are built most."""
 V_ANGLES = {2: 90.0, 4: 90.0, 6: 60.0, 8: 90.0, 10: 72.0, 12: 60.0}
 BOXER_THROWS: dict[int, tuple[float, ...]] = {2: (0, 180), 4: (0, 180, 180, 0), 6: (0, 180, 120, 300, 240, 60)}
 NARROW = 15.0

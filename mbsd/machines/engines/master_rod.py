@@ -1,4 +1,4 @@
-"""Master rods: of all rods on a throw one runs on the crank pin, and the others on knuckle pins around its big end.
+"""Master rods: one rod of a throw runs on the crank pin, the others on knuckle pins round its big end.
 
     P = r e^(i p)                                  the crank pin; p: direction of the throw
     K = P + k e^(i (g + a)),  g = b_m - asin((r / l) sin(p - b_m))       g: direction of the master rod, b_m its bank
@@ -69,13 +69,13 @@ class Knuckle:
     radius: float
     """m"""
     angle: float
-    """From the master rod (rad)."""
+    """Angle from the master rod (rad)."""
     motion: ArticulatedMotion
     late: float
-    """How far the shaft turns from the top dead centre of the layout to that of the piston (rad)."""
+    """Turn of the shaft from the top dead centre of the layout to that of the piston (rad)."""
 
     def rod_starts(self, master: float, pin: complex, axis: float) -> float:
-        """Return the rod's direction (rad) from that of the master rod, the crank pin (m) and the cylinder's axis."""
+        """Return the rod's direction (rad) from the master rod's, the crank pin (m), the cylinder's axis."""
         side = ((pin + self.radius * cmath.exp(1j * (master + self.angle))) * cmath.exp(-1j * axis)).imag
         return axis - math.asin(side / self.motion.rod)
 
@@ -83,7 +83,10 @@ class Knuckle:
 def knuckles(
     plan: Layout, name: str, rods: str | MasterRod | None, throw: float, rod: float, bore: float
 ) -> tuple[MasterRod | None, dict[int, Knuckle]]:
-    """Return the knuckle pins by index of their cylinder; ``rods`` None: of radial engines alone. Raises ModelError."""
+    """Return the knuckle pins by index of their cylinder.
+
+    ``rods`` None: of radial engines alone. Raises ModelError.
+    """
     if isinstance(rods, str) and rods not in WAYS:
         raise ModelError(f"engine '{name}': rods '{rods}'; they are 'master', 'pin' or MasterRod(...)")
     if rods == "pin" or (rods is None and not is_radial(plan)):
@@ -93,7 +96,7 @@ def knuckles(
     radius = positive_number(f"engine '{name}': radius of the knuckle pins", radius, "m")
     if radius >= rod - throw:
         raise ModelError(
-            f"engine '{name}': the knuckle pins are {1000 * radius:g} mm from the crank pin, and rods of "
+            f"engine '{name}': the knuckle pins are {1000 * radius:g} mm from the crank pin. Rods of "
             f"{1000 * rod:g} mm on a throw of {1000 * throw:g} mm leave less than {1000 * (rod - throw):g} mm; make "
             "radius smaller or rod longer"
         )
@@ -156,8 +159,8 @@ def _of_throw(
         if not motion.turns:
             raise ModelError(
                 f"engine '{name}': the rod of cylinder {k + 1}, {1000 * motion.rod:g} mm from a knuckle pin "
-                f"{math.degrees(angle):g} degrees from the master rod, does not let the shaft go round; its bank is "
-                f"{math.degrees(banks[k]):g} degrees from the master's, so turn the knuckle pin there, or make radius "
+                f"{math.degrees(angle):g} degrees from the master rod, does not let the shaft go round. Its bank is "
+                f"{math.degrees(banks[k]):g} degrees from the master's: turn the knuckle pin there, or make radius "
                 "smaller"
             )
         # The motion counts the throw from where it points away from the master's head.

@@ -65,15 +65,15 @@ def opposed_pistons(
     gas: GasCycle | None = None,
     name: str = "opposed_pistons",
 ) -> Mechanism:
-    """Return an engine of as many cylinders as ``throws`` (DEGREES), each with two pistons of this ``stroke`` (m).
+    """Return an engine with a cylinder for each of ``throws`` (DEGREES), of two pistons each.
 
-    The lower shaft ``crank`` turns counter-clockwise about the origin, the cylinders stand upright on it, and
-    ``upper_crank`` is above them; bodies and joints of the upper pistons are called ``upper_rod_1`` and so on. The
-    upper shaft leads by ``phase`` (DEGREES). By an ``idler`` between them both turn in one sense, or, ``opposite``,
-    their gears mesh directly. ``crown``: height of the pistons above their wrist pins (m); ``gap``: between the crowns
-    where they are nearest (m), given by the compression of the gas where it has one. ``gas``: such as
-    ``two_stroke(15.0, heat_density=1e6)``, between both pistons; it fires at every turn. The other arguments are those
-    of :func:`mbsd.machines.engines.engine.engine`.
+    Each piston has this ``stroke`` (m). The lower shaft ``crank`` turns counter-clockwise about the origin, the
+    cylinders stand upright on it, and ``upper_crank`` is above them; bodies and joints of the upper pistons are called
+    ``upper_rod_1`` and so on. The upper shaft leads by ``phase`` (DEGREES). By an ``idler`` between them both turn in
+    one sense, or, ``opposite``, their gears mesh directly. ``crown``: height of the pistons above their wrist pins (m);
+    ``gap``: between the crowns where they are nearest (m), given by the compression of the gas where it has one.
+    ``gas``: such as ``two_stroke(15.0, heat_density=1e6)``, between both pistons; it fires at every turn. The other
+    arguments are those of :func:`mbsd.machines.engines.engine.engine`.
 
     Returns a mechanism whose distance between the shafts follows from all this. Raises ModelError for what cannot be.
     """
@@ -177,7 +177,10 @@ def _pistons(
     lengths: tuple[float, float],
     masses: ShaftMasses,
 ) -> None:
-    """Add rods and pistons of one shaft; ``where``: prefix of names, direction of cylinders, place of the shaft."""
+    """Add rods and pistons of one shaft.
+
+    ``where``: prefix of names, direction of cylinders, place of the shaft.
+    """
     (prefix, axis, foot), (throw, rod), end = where, lengths, masses.end
     inertia = None if masses.rod is None else masses.rod * end * (1 - end) * rod**2
     for k, (cylinder, place) in enumerate(zip(plan.cylinders, z, strict=True), start=1):

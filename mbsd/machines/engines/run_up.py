@@ -1,4 +1,4 @@
-"""A mass on a mount whose engine runs up through resonance: one mode in closed form, at any acceleration.
+"""Run-up through resonance: an engine on its mount, one mode in closed form, at any acceleration.
 
     x'' + 2 zeta w x' + w^2 x = -d^2/dt^2 cos(theta)     "inertia": what moves to and fro with order n of the shaft
                               = w^2 cos(theta)           "constant": a force of constant amplitude, as of gas
@@ -37,11 +37,11 @@ SAMPLES = 48
 MOST = 4_000_000
 """Rows."""
 SHIFT = 0.861
-"""How far the undamped peak is from resonance, times q^(-1/2), in parts of the speed there."""
+"""Distance of the undamped peak from resonance, times q^(-1/2), in parts of the speed there."""
 SHIFTS = 3.0
-"""How many of these the run goes past resonance."""
+"""Number of these distances by which the run goes past resonance."""
 LEAST = 0.3
-"""How far past resonance it goes at least, in parts of the speed there."""
+"""Least distance by which it goes past resonance, in parts of the speed there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +83,7 @@ def run_up(
     excitation: str = "inertia",
     until: float | None = None,
 ) -> RunUp:
-    """Return one mode of ``frequency`` (Hz, undamped) under an ``order`` of a shaft that speeds up from rest.
+    """Return one mode of ``frequency`` (Hz, undamped) under an ``order`` of a shaft from rest.
 
     ``until``: speed of the shaft at the end (rad/s), by default well past the peak. Raises ModelError for numbers that
     cannot be, damping that lets nothing resonate, and runs of more than 80 000 periods.

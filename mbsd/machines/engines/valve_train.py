@@ -1,7 +1,8 @@
-"""Overhead camshafts: one on each bank, turned at half speed by a belt, with two valves in line over each cylinder.
+"""Overhead camshafts: one on each bank, belt-driven at half speed, two valves over each cylinder.
 
-The cams open flat tappets by a lift without jumps of acceleration (modified trapezoid up and down again). Of a crank
-angle phi counted from the top dead centre that fires, and a ramp beyond the angles of the cycle of the gas,
+The valves of a cylinder are in line. The cams open flat tappets by a lift without jumps of acceleration (modified
+trapezoid up and down again). Of a crank angle phi counted from the top dead centre that fires, and a ramp beyond the
+angles of the cycle of the gas,
 
     intake   opens at 2 pi - ramp,              closes at 4 pi + intake_closes + ramp
     exhaust  opens at exhaust_opens - ramp,     closes at 2 pi + ramp
@@ -36,7 +37,7 @@ dead centre, in bores.
 PULLEY = 0.42
 """Radius of the pulley on the crankshaft, in bores."""
 BEYOND, NEXT = 1.0, 0.36
-"""From the last cylinder to the first belt, and from a belt to the next, in bores."""
+"""Distance from the last cylinder to the first belt, and from a belt to the next, in bores."""
 ROUND = 1.15
 """The base circle, in the least that a flat tappet asks for."""
 LEAST = 0.2
@@ -76,7 +77,10 @@ class ValveTrain:
             not_negative_number("engine: mass of a valve", self.mass, "kg")
 
     def timing(self, gas: GasCycle | None) -> dict[str, tuple[float, float]]:
-        """Return crank angles (rad, from the firing top dead centre) where each valve begins to open and is closed."""
+        """Return crank angles (rad, from the firing top dead centre) at which valves begin to open and close.
+
+        A valve is closed at the latter.
+        """
         opens, closes = (gas.exhaust_opens, gas.intake_closes) if isinstance(gas, FourStroke) else (math.pi, -math.pi)
         ramp = math.radians(self.ramp)
         return {
@@ -146,9 +150,7 @@ def valve_train(
 
 
 SEAT, LENGTH = 0.78, 0.13
-"""Where the springs stand, over the wrist pin at the top dead centre, and how far below the tappet's face they push it,
-in bores.
-"""
+"""Height of the springs over the wrist pin at the top dead centre, and their depth below the tappet's face (bores)."""
 
 
 def _law(begin: float, end: float, lift: float) -> Lift:
@@ -165,8 +167,8 @@ def _base(name: str, laws: Mapping[str, Lift], bore: float, given: float | None)
         return max(ROUND * need, LEAST * bore)
     if given <= need:
         raise ModelError(
-            f"engine '{name}': cams with a base_radius of {1000 * given:.4g} mm would be undercut, because a flat "
-            f"tappet asks here for more than {1000 * need:.4g} mm; make it larger, the lift less or the ramp longer"
+            f"engine '{name}': cams with a base_radius of {1000 * given:.4g} mm would be undercut: a flat tappet "
+            f"needs more than {1000 * need:.4g} mm here. Make it larger, the lift less or the ramp longer"
         )
     return given
 

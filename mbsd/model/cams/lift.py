@@ -98,7 +98,7 @@ RISES: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "modified_sine": _mirrored(_modified_sine),
     "modified_trapezoid": _mirrored(_modified_trapezoid),
 }
-"""By name: u (T,) to f, f', f'', f''' (T, 4)."""
+"""Functions by name: u (T,) to f, f', f'', f''' (T, 4)."""
 
 INNER: dict[str, tuple[float, ...]] = {
     "modified_sine": (1 / 8, 7 / 8),

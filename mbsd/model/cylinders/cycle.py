@@ -180,7 +180,7 @@ class Opening:
 
     open: bool
     port: float | None = None
-    """How far below the head it is (m); None: a valve."""
+    """Distance below the head (m); None: a valve."""
 
 
 class GasCycle(ABC):

@@ -46,8 +46,8 @@ def motion_of_joints(force: Force, joints: Sequence[Joint], sense: float) -> Fou
     start = -own.from_axis(force.i)[0]
     if start <= 0.0:
         raise ModelError(
-            f"force '{force.name}': the x axis of its first marker, the cylinder's, must point from the head towards "
-            f"the axis of '{crank}', which lies {start:.6g} m along it; turn the marker, or give stroke= and rod="
+            f"force '{force.name}': its first marker, the cylinder's, must have its x axis from the head towards "
+            f"'{crank}', whose axis lies {start:.6g} m along it. Turn the marker, or give stroke= and rod="
         )
     others = dict.fromkeys(name for joint in joints for name in joint.bodies if name not in (frame, piston, crank))
     for rod in others:
@@ -59,8 +59,8 @@ def motion_of_joints(force: Force, joints: Sequence[Joint], sense: float) -> Fou
                 if not motion.turns:
                     raise ModelError(
                         f"force '{force.name}': the rod '{rod}' is {motion.rod:g} m long, the throw of '{crank}' "
-                        f"{throw:g} m and the offset of the cylinder {motion.offset:g} m; for a crank that turns the "
-                        "rod must be longer than both together"
+                        f"{throw:g} m and the offset of the cylinder {motion.offset:g} m. For a crank that turns, "
+                        "make the rod longer than both together"
                     )
                 return motion, start - motion.reach + reach, _wrapped(motion.top - ahead + own.angle)
             for master in others:
@@ -222,7 +222,7 @@ def cylinder_of(force: Force, joints: Sequence[Joint]) -> EngineCylinder:
             raise ModelError(
                 f"{what}: fires_at is {math.degrees(fires_at):.6g} degrees, but its piston is at the top dead centre "
                 f"with the crank at {math.degrees(dead):.6g} or {math.degrees(dead + TURN):.6g} degrees (radians in "
-                "the model); correct it, or leave it out"
+                "the model). Correct it, or leave it out"
             )
     else:
         motion = given_motion(what, p["stroke"], p["rod"], p["offset"], sense)

@@ -125,7 +125,7 @@ class ArticulatedMotion:
     master: float
     master_offset: float
     knuckle: tuple[float, float]
-    """From the crank pin, along the master rod and to its left."""
+    """Coordinates from the crank pin, along the master rod and to its left."""
     bank: float
     """Angle of the own cylinder's axis against the master's."""
     rod: float

@@ -173,8 +173,8 @@ def _slip_speeds_given(m: Model, name: str, given: Sequence[float]) -> tuple[flo
     low, high = number_pair(what, given)
     if not 0.0 <= low < high:
         raise ModelError(
-            f"{what} are {low:g} and {high:g} m/s; give that up to which there is no friction, 0 or more, and a larger "
-            "one from which on there is all of it"
+            f"{what} are {low:g} and {high:g} m/s; give two speeds, 0 <= first < second: below the first there is no "
+            "friction, above the second there is all of it"
         )
     return low, high
 

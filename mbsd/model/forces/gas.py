@@ -90,7 +90,7 @@ OWN = (
     "exponent", "length", "stroke", "compression_damping", "extension_damping", "end_damping", "end_way", "friction",
     "slip_speed", "stop_stiffness", "stop_damping",
 )  # fmt: skip
-"""As mbsd/equations/interactions/gas_strut.py reads them, after the force and the length of the gas."""
+"""Numbers as mbsd/equations/interactions/gas_strut.py reads them, after the force and the length of the gas."""
 
 
 def _gas_length(force: Force) -> float:

@@ -233,8 +233,8 @@ def hydraulic_cylinder(
         )
     if not tank < supply:
         raise ModelError(
-            f"{what}: the pressure of the tank is {tank:g} Pa and that of the supply {supply:g} Pa; both are absolute, "
-            "in pascals (200 bar are 2e7), and the supply's is the higher one"
+            f"{what}: the pressure of the tank is {tank:g} Pa and that of the supply {supply:g} Pa. Both are absolute, "
+            "in pascals (200 bar are 2e7); make the supply's the higher one"
         )
     if not air < 1.0:
         raise ModelError(f"{what}: air is {air:g}; it is a part of the volume, say 0.005")

@@ -117,9 +117,9 @@ class Fitted(Function):
     first: float = 0.0
     last: float = 0.0
     jumps: tuple[float, ...] = ()
-    """Where f itself jumps."""
+    """Times at which f itself jumps."""
     missed: str | None = None
-    """What could not be fitted, in words."""
+    """The part that could not be fitted, in words."""
 
     @property
     def given_derivatives(self) -> bool:

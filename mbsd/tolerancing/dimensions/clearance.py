@@ -23,7 +23,7 @@ SPREADS: dict[str, type[Spread]] = {"normal": Normal, "uniform": Uniform, "trian
 
 @dataclass(frozen=True)
 class Clearance(Suggesting):
-    """A pin whose bore is wider than it by ``play`` (m, difference of the diameters), give or take ``tolerance`` (m).
+    """A pin with ``play`` (m, difference of the diameters) in its bore, give or take ``tolerance`` (m).
 
     The pin's centre lies half the play off the centre of its bore, by ``direction``: "reaction", against the force that
     the ideal mechanism's sweep gives, at each time; "any", where all directions in the frame of the joint's first body

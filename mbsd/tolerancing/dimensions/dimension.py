@@ -1,4 +1,7 @@
-"""Dimensions as columns of deviations: a size by one number, a pin by half of its play or a position in its bore."""
+"""Dimensions as columns of deviations: a size by one number, a pin by its position in the bore.
+
+A pin may also have one number, half of its play.
+"""
 
 from __future__ import annotations
 
@@ -104,7 +107,7 @@ class Size(Dimension):
 
     def draw(self, u: np.ndarray) -> np.ndarray:
         """(n, 1) deviations."""
-        return self.spread.of(u)
+        return self.spread.deviations(u)
 
     def variance(self, slopes: np.ndarray) -> float:
         """Squares of standard deviations add up."""
@@ -121,7 +124,10 @@ class Size(Dimension):
 
 @dataclass(frozen=True)
 class Play(Dimension):
-    """A pin with play. Columns are halves of the play: one along the reaction, or two coordinates in the bore."""
+    """A pin with play.
+
+    Columns are halves of the play: one along the reaction, or two coordinates in the bore.
+    """
 
     clearance: Clearance = Clearance(1.0)
 
@@ -143,7 +149,7 @@ class Play(Dimension):
     def _sizes(self, u: np.ndarray) -> np.ndarray:
         """Halves of the play."""
         sizes = self.clearance.sizes
-        play = self.clearance.play + (sizes.of(u) if sizes else 0.0 * u)
+        play = self.clearance.play + (sizes.deviations(u) if sizes else 0.0 * u)
         return 0.5 * np.maximum(play, 0.0)
 
     def halved(self, x: np.ndarray) -> np.ndarray:

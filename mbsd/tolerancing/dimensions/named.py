@@ -1,4 +1,6 @@
-"""The dimensions that a user names, as a list of :class:`Dimension`: by the words of ``batch`` and ``change``.
+"""Dimensions that a user names, as a list of :class:`Dimension`.
+
+They are named in the words of ``batch`` and ``change``.
 
 {"crank": 5e-5}                         the length of a bar or a rod
 {"D": 2e-5}                             both coordinates of the place of a joint or a traced point, as in ``batch``
@@ -38,7 +40,9 @@ SIZES = ("length", "radius", "diameter", "bore")
 
 
 def dimensions_of(m: Model, sizes: Any) -> list[Dimension]:
-    """Return the dimensions of a mechanism; pins whose play follows the reaction are still :class:`LoosePlay`.
+    """Return the dimensions of a mechanism.
+
+    Pins whose play follows the reaction are still :class:`LoosePlay`.
 
     Raises ModelError for names that do not exist and tolerances that cannot be.
     """
@@ -141,7 +145,10 @@ def _named(m: Model, name: Any, key: str, value: Any) -> Dimension:
 
 
 def _part(m: Model, name: Any, key: str, value: Any) -> Dimension:
-    """A number of a law, a coordinate of a marker by its body, an angle or speed of the start, a part of gravity."""
+    """Return the dimension of a number of a law, a marker, the start or gravity.
+
+    A marker has coordinates by its body, the start an angle or speed, gravity a component.
+    """
     every = [*(other for table in connections(m) for other in table), *m.bodies, *m.traces, "gravity"]
     if name not in every:
         raise ModelError(
@@ -217,9 +224,10 @@ def _play(m: Model, name: Any, clearance: Any) -> LoosePlay:
 
 
 def refuse_beyond(m: Model, what: str, far: float, marker: Marker) -> None:
-    """Raise ModelError where ``marker`` strays as ``far`` (m) as the farthest other joint of its body is, or farther.
+    """Raise ModelError if ``marker`` strays as far as the farthest other joint of its body.
 
-    ``what`` says so in words. A body with no other joint has no such length.
+    ``far`` (m) is its stray. ``what`` says so in words. A body with no other joint has no such
+    length.
     """
     reach = _reach(m, marker)
     if reach > 0.0 and far >= reach:

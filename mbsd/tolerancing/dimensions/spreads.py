@@ -71,7 +71,7 @@ class Spread:
         """How far from the middle a number can lie."""
         return self.half
 
-    def of(self, u: np.ndarray) -> np.ndarray:
+    def deviations(self, u: np.ndarray) -> np.ndarray:
         """(n,) deviations from (n,) numbers between 0 and 1."""
         raise NotImplementedError
 
@@ -115,7 +115,7 @@ class Normal(Spread):
         """How far from the middle a number can lie."""
         return self.half if self.cut else self.half * max(1.0, FARTHEST / self.sigmas)
 
-    def of(self, u: np.ndarray) -> np.ndarray:
+    def deviations(self, u: np.ndarray) -> np.ndarray:
         """(n,) deviations from (n,) numbers between 0 and 1."""
         from scipy.special import ndtr, ndtri
 
@@ -134,7 +134,7 @@ class Uniform(Spread):
         """Standard deviation."""
         return self.half / math.sqrt(3.0)
 
-    def of(self, u: np.ndarray) -> np.ndarray:
+    def deviations(self, u: np.ndarray) -> np.ndarray:
         """(n,) deviations from (n,) numbers between 0 and 1."""
         return self.middle + self.half * (2.0 * u - 1.0)
 
@@ -148,7 +148,7 @@ class Triangular(Spread):
         """Standard deviation."""
         return self.half / math.sqrt(6.0)
 
-    def of(self, u: np.ndarray) -> np.ndarray:
+    def deviations(self, u: np.ndarray) -> np.ndarray:
         """(n,) deviations from (n,) numbers between 0 and 1."""
         below = u < 0.5
         side = np.sqrt(2.0 * np.where(below, u, 1.0 - u)) - 1.0
@@ -156,7 +156,10 @@ class Triangular(Spread):
 
 
 def spread_of(what: str, given: Any) -> Spread:
-    """Return the spread that is given of a dimension: a bare tolerance is :class:`Normal`. Raises ModelError."""
+    """Return the spread of a dimension; a bare tolerance is :class:`Normal`.
+
+    Raises ModelError.
+    """
     if isinstance(given, Spread):
         return given
     if isinstance(given, str):

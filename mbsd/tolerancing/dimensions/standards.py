@@ -1,4 +1,4 @@
-"""Standard tolerances by size: general ones of ISO 2768-1, grades and fits of ISO 286-1. Sizes and answers in m.
+"""Standard tolerances by size: ISO 2768-1, and grades and fits of ISO 286-1, all in m.
 
     general_tolerance(0.120, "m")         3e-4: the length is 120 +- 0.3 mm
     standard_tolerance(0.010, 7)          15e-6: IT7 at 10 mm, from limit to limit
@@ -90,7 +90,9 @@ NEAR = 1e-9
 
 
 def standard_tolerance(size: float, grade: int) -> float:
-    """The standard tolerance IT ``grade`` (m, from limit to limit) of a ``size`` (m) up to 500 mm by ISO 286-1.
+    """Return the standard tolerance IT ``grade`` (m) of a ``size`` (m) up to 500 mm by ISO 286-1.
+
+    It is from limit to limit.
 
     Raises ModelError for a grade other than 1 to 16, and for a larger size.
     """
@@ -100,10 +102,10 @@ def standard_tolerance(size: float, grade: int) -> float:
 
 
 def fit(size: float, name: str) -> tuple[float, float]:
-    """Least and largest play (m), bore less pin, of a fit such as "H7/g6" at a diameter ``size`` (m) by ISO 286-1.
+    """Return least and largest play (m), bore less pin, of an ISO 286-1 fit such as "H7/g6".
 
-    Holes D, E, F, G, H, JS; shafts d, e, f, g, h, js, k, m, n, p. Below 0 the pin is larger than its bore. Raises
-    ModelError for another text, and for a diameter beyond 500 mm.
+    The diameter is ``size`` (m). Holes D, E, F, G, H, JS; shafts d, e, f, g, h, js, k, m, n, p. Below 0 the pin is
+    larger than its bore. Raises ModelError for another text, and for a diameter beyond 500 mm.
     """
     zones = [ZONE.fullmatch(part.strip()) for part in text("fit: name", name).split("/")]
     hole, shaft = zones if len(zones) == 2 else (None, None)

@@ -1,1 +1,4 @@
-"""Machines with other dimensions, solved: all at once, one by one, simulated, or by a function of the user."""
+"""Solution of mechanisms with other dimensions: all at once, singly, simulated, or by a function.
+
+The function is the user's.
+"""

@@ -1,4 +1,7 @@
-"""Linkages swept all at once (mbsd/kinematics/batch.py), their pins in the bores where the reaction pushes them."""
+"""Linkages swept all at once, their pins in the bores where the reaction pushes them.
+
+The sweep is that of mbsd/kinematics/batch.py.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +40,10 @@ def serves(m: Model, columns: Sequence[Column], result: Any, ready: Any) -> bool
 
 
 class Batched:
-    """Machines swept over times ``grid`` (T,); ``pushes`` by joint are directions of gaps (:func:`push_directions`)."""
+    """Mechanisms swept over times ``grid`` (T,).
+
+    ``pushes`` by joint are directions of gaps (:func:`push_directions`).
+    """
 
     way = "swept all at once"
 
@@ -97,7 +103,10 @@ class Batched:
         return DesignSweeps(self._m, self._ready, self._grid, moved, self._angles, finer)
 
     def _numbers(self, x: np.ndarray) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-        """Return lengths and positions as ``batch`` takes them; a pin at the end of a bar goes with its length."""
+        """Return lengths and positions as ``batch`` takes them.
+
+        A pin at the end of a bar goes with its length.
+        """
         lengths = {
             column.name: column.nominal + x[:, k] for k, column in enumerate(self._columns) if column.kind == "length"
         }
@@ -117,7 +126,10 @@ class Batched:
 
 
 def _followed(m: Model, result: Any) -> tuple[Model, dict[str, tuple[str, str, str]]]:
-    """A mechanism that traces all that the result reads, and by quantity the trace or the body and the component."""
+    """Return a mechanism that traces all that the result reads, and the trace of each quantity.
+
+    A quantity may also have a body; both have a component.
+    """
     if not isinstance(result, Measure):
         return m, {}
     out, of = m, {}
@@ -133,10 +145,10 @@ def _followed(m: Model, result: Any) -> tuple[Model, dict[str, tuple[str, str, s
 
 
 def push_directions(sol: Any, names: Sequence[str]) -> dict[str, np.ndarray | None]:
-    """By pin, (T, 2) by what the marker that ``batch`` places moves for a unit of the gap, in its body's frame.
+    """Return by pin (T, 2) the displacement of the marker that ``batch`` places for a unit of the gap.
 
-    The centre of the second marker lies behind that of the first, against the force on the second body. None for a
-    pin without force.
+    It is in the frame of the marker's body. The centre of the second marker lies behind that of the first, against the
+    force on the second body. None for a pin without force.
     """
     m = sol.mechanism
     forces = {name: sol.joint(name).reaction for name in m.joints}

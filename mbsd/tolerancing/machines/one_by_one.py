@@ -38,7 +38,7 @@ class Answers:
     values: np.ndarray
     """(n,), NaN where a machine failed."""
     failures: Counter[str] = field(default_factory=Counter)
-    """How many failed for which reason."""
+    """Number of failures by reason."""
 
 
 class Machines(Protocol):
@@ -71,9 +71,9 @@ class OneByOne:
     def __init__(self, way: str, evaluate: Callable[[np.ndarray], float]) -> None:
         self.way, self._evaluate = way, evaluate
         self._reasons: dict[type[MechanismError], str] = {}
-        """What failed by an error of one type is counted together, under what the first of them said."""
+        """Reasons of failures by type of error: each type is counted together, under its first message."""
 
-    def at(self, row: np.ndarray) -> float:
+    def evaluate(self, row: np.ndarray) -> float:
         """The result of a row. Raises what it raises."""
         return self._evaluate(row)
 
@@ -126,7 +126,7 @@ def with_numbers(m: Model, columns: Sequence[Column], row: np.ndarray) -> Any:
     put_together(out, [number for number, _ in parts], [value for _, value in parts], changes)
     for column, deviation in places:  # about where the ends of bars now are
         number = _number(out, column)
-        number.put(out, number.value + deviation)
+        number.assign(out, number.value + deviation)
     return out
 
 
@@ -151,8 +151,8 @@ class Simulated:
         for column in columns:
             if column.kind in ("bore", "reaction"):
                 raise ModelError(
-                    f"{m.name}: tolerances: the play of '{column.name}' cannot stray in a simulation; drivers that "
-                    "give the motion are swept, and the clearance of a clearance_joint is a number that may stray"
+                    f"{m.name}: tolerances: the play of '{column.name}' cannot stray in a simulation. Give the motion "
+                    "by drivers and sweep it, or vary the clearance of a clearance_joint"
                 )
             if column.kind == "place" and column.name in m.traces and column.name in m.joints:
                 raise ModelError(

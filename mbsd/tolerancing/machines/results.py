@@ -69,7 +69,10 @@ def number_of(owner: str, given: Any) -> float:
 
 
 def called(owner: str, function: Callable[..., Any], *given: Any, **named: Any) -> Any:
-    """Return what a function of the user gives. Raises FailingResult for its errors, but for errors of mechanisms."""
+    """Return the result of a function of the user.
+
+    Raises FailingResult for its errors, but for errors of mechanisms.
+    """
     try:
         return function(*given, **named)
     except MechanismError:
@@ -110,7 +113,7 @@ class OfSolution:
 
 
 def placed(m: Model, name: str) -> tuple[str, str, str] | None:
-    """Return "body" or "trace", the name and the component of a quantity, if ``batch`` gives it; else None."""
+    """Return "body" or "trace", the name and the component of a quantity that ``batch`` gives; else None."""
     whole, _, component = name.rpartition(".")
     if whole in m.bodies:
         return ("body", whole, component) if component in ("x", "y", "theta") else None

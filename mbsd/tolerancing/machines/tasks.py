@@ -72,9 +72,8 @@ def _driven(
     can = serves(m, columns, result, prepare(m, float(grid[0]), float(grid[-1])))
     if way == "batch" and not can:
         raise ModelError(
-            f"{m.name}: tolerances: these machines cannot be swept all at once: that takes driven bodies and dyads, "
-            "lengths, places and play, and results x, y of bodies and traced points or theta of bodies; take "
-            "way='sweep'"
+            f"{m.name}: tolerances: these mechanisms cannot be swept all at once; take way='sweep'. All at once takes "
+            "driven bodies and dyads, lengths, positions and play, and results x, y or theta of bodies, x, y of traces"
         )
     pins = [d for d in dimensions if isinstance(d, LoosePlay)]
     if way == "sweep" or not can:
@@ -118,7 +117,7 @@ def _notes(known: Sequence[str], loose: Sequence[Any]) -> list[str]:
 def alone(owner: str, machines: Machines, columns: Sequence[Any]) -> float:
     """The result of the mechanism as it is given. Raises ModelError where it has none."""
     if isinstance(machines, OneByOne):
-        value = machines.at(np.zeros(len(columns)))
+        value = machines.evaluate(np.zeros(len(columns)))
         answers = Answers(np.array([value]))
     else:
         answers = machines(np.zeros((1, len(columns))))
@@ -174,7 +173,7 @@ def _itself(owner: str, given: Any) -> Any:
     """Return the result itself. Raises ModelError for a mechanism."""
     if isinstance(given, Model):
         raise ModelError(
-            f"{owner}: tolerances: it gives a mechanism, and result= is missing; give a measure of mbsd.measures, such "
+            f"{owner}: tolerances: it gives a mechanism, and result= is missing. Give a measure of mbsd.measures, such "
             "as largest('P.y'), or a function of the mechanism that gives a number"
         )
     return given

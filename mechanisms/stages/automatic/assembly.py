@@ -7,13 +7,15 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 
+from mbsd import Mechanism
 from mechanisms.stages.automatic.body_shapes import PlacedEye, body_shape, rod_shape, yoke_shape
-from mechanisms.stages.automatic.layout.plan import BOLT_HOLE, Mark
+from mechanisms.stages.automatic.layout.items import Heights
+from mechanisms.stages.automatic.layout.plan import BOLT_HOLE, Foot, Mark, Plan
+from mechanisms.stages.automatic.layout.sizes import Sizes
 from mechanisms.stages.automatic.standing import BackPlate, Upright
 from mechanisms.stages.automatic.wheels.wheels import shape_of
 from shared.shapes.base import base_plate, foot
@@ -21,21 +23,13 @@ from shared.shapes.build import extruded
 from shared.shapes.engraving import LETTERS, dial, engraved, rule, text
 from shared.shapes.kernel import is_of_kernel
 from shared.shapes.link import Eye, with_eyes
-from shared.shapes.outline import circle
+from shared.shapes.outline import Circle, circle
 from shared.shapes.screw import SOCKET, head_diameter, socket_screw
 from shared.shapes.solid import Solid, placed
 from shared.shapes.standards import screw_length, screw_name
 from shared.stage.console import Shown
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.plan import Foot, Plan
-    from mechanisms.stages.automatic.layout.sizes import Sizes
-    from shared.shapes.outline import Circle
-
 
 # A failure of the CAD kernel in automatic parts becomes an error that names the part, no traceback.
 
@@ -45,7 +39,7 @@ KERNEL = "the CAD kernel cannot make"
 
 @contextmanager
 def kernel_refusals(name: str, what: str) -> Iterator[None]:
-    """Raise UserError that names mechanism ``name`` and ``what`` where the CAD kernel fails, or a shape has no room."""
+    """Raise UserError naming mechanism and ``what`` where the CAD kernel fails or a shape has no room."""
     try:
         yield
     except Exception as error:
@@ -116,23 +110,13 @@ LEAST = 0.99
 """How much of a word must be on the plate."""
 
 
-@dataclass(frozen=True)
-class Wish:
-    """A word that is asked for, its middle ``at`` (x, y) in the frame of its body (mm)."""
-
-    body: str
-    word: str
-    at: tuple[float, float]
-    height: float | None
-
-
-def place(wishes: Iterable[Wish], plan: Plan) -> None:
-    """Enter the words; letters are half as high as an eye's radius where nobody says."""
+def place(wishes: Iterable[tuple[str, Mark]], plan: Plan) -> None:
+    """Enter words by body, in mm; letters are half as high as an eye's radius where nobody says."""
     sizes = plan.layout.sizes
-    for wish in wishes:
-        x, y = (length / sizes.scale for length in wish.at)
-        height = wish.height / sizes.scale if wish.height else sizes.eye / 2
-        plan.marks.setdefault(wish.body, []).append(Mark(wish.word, x, y, height))
+    for body, wish in wishes:
+        height = wish.height / sizes.scale or sizes.eye / 2
+        mark = Mark(wish.word, wish.x / sizes.scale, wish.y / sizes.scale, height)
+        plan.marks.setdefault(body, []).append(mark)
 
 
 def refuse_letters(name: str, word: str) -> None:
@@ -178,8 +162,10 @@ MOST_LETTERS = 3
 
 
 def base(plan: Plan, engraved_too: bool = True) -> list[Solid]:
-    """Return the plate, the ground's main piece, ``engraved_too`` unless nobody is to see it; screws and feet, or
-    spacers to a wall, where it is on no stand. Nothing where the ground itself is all that one needs.
+    """Return the plate, the ground's main piece, and what carries it.
+
+    It is engraved if ``engraved_too``. Screws and feet, or spacers to a wall, are there where it is on no stand.
+    Nothing where the ground itself is all that one needs.
     """
     back = back_plate(plan)
     if back is None:
@@ -215,7 +201,10 @@ def back_plate(plan: Plan) -> BackPlate | None:
 
 @dataclass(frozen=True)
 class _Screw:
-    """Screw of a corner (rmm), through the plate and its foot. ``room``: diameter and depth of its counterbore."""
+    """Screw of a corner (rmm), through the plate and its foot.
+
+    ``room``: diameter and depth of its counterbore.
+    """
 
     shape: cq.Workplane
     diameter: float
@@ -238,7 +227,10 @@ def _corner_screw(sizes: Sizes) -> _Screw:
 
 
 def _extent(plan: Plan, upright: Upright) -> tuple[float, float, float, float]:
-    """Return the extent of the plate: round all feet; without any, under what moves; and as far as one wishes."""
+    """Return the extent of the plate: round all feet, or without any under what moves.
+
+    It reaches as far as one wishes.
+    """
     if plan.feet:
         places = np.array([[stand.x, stand.y] for stand in plan.feet])
     else:
@@ -355,7 +347,7 @@ def _plate(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
 
 
 def _geared(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
-    """Return the plate of a body with teeth: a wheel that carries its eyes, or a wheel and a plate round its eyes."""
+    """Return a toothed plate: a wheel that carries its eyes, or a wheel and a plate round its eyes."""
     eyes, own_wheel = plan.eyes.get(body, []), plan.wheels[body]
     wheel, holes = shape_of(own_wheel, thickness, [(x - own_wheel.x, y - own_wheel.y, eye) for x, y, eye in eyes])
     wheel = placed(wheel, own_wheel.x, own_wheel.y)

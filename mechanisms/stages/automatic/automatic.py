@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
 
+import cadquery as cq
+
+from mbsd import Mechanism, Solution
 from mechanisms.stages.automatic.assembly import (
     ROD,
-    Wish,
     back_plate,
     built,
     fitted,
@@ -24,7 +25,7 @@ from mechanisms.stages.automatic.features import laid_out
 from mechanisms.stages.automatic.layout.items import Heights, Need, heights
 from mechanisms.stages.automatic.layout.layout import Layout, Springs
 from mechanisms.stages.automatic.layout.motion import poses_of, times_of
-from mechanisms.stages.automatic.layout.plan import Plan, build
+from mechanisms.stages.automatic.layout.plan import Mark, Plan, build
 from mechanisms.stages.automatic.layout.sizes import (
     THINNEST,
     Sizes,
@@ -46,23 +47,17 @@ from mechanisms.stages.loading.wishes import wished, wished_scale
 from shared.contract.materials import MATERIALS
 from shared.contract.parts import Mount, mounted
 from shared.shapes.bodies import Bodies, pair_of
+from shared.shapes.outline import Point
+from shared.shapes.solid import Solid
+from shared.shapes.standards import Fit
 from shared.stage.console import Shown
 from shared.stage.errors import UserError, did_you_mean
-
-if TYPE_CHECKING:
-    import cadquery as cq
-
-    from mbsd import Mechanism, Solution
-    from shared.shapes.outline import Point
-    from shared.shapes.solid import Solid
-    from shared.shapes.standards import Fit
-
 
 # Names in wishes for parts: bodies and materials that there are.
 
 
 def refuse_unknown(m: Mechanism, body: str, left_out: Collection[str], ground: bool = False) -> None:
-    """Raise UserError unless ``body`` is one that moves, a rod (or ground, where that may be) and is not left out."""
+    """Raise UserError unless ``body`` moves, is a rod, or where that may be ground, and is not left out."""
     if body in left_out:
         raise UserError(f"{m.name}: '{body}' is left out, so there is nothing of it to shape")
     names = [*(name for name in m.bodies if ground or name != "ground"), *rods_of(m)]
@@ -103,7 +98,7 @@ class Automatic:
         self._joined: list[Joined] = []
         self._left_out: set[str] = set()
         self._touching: set[tuple[str, str]] = set()
-        self._marks: list[Wish] = []
+        self._marks: list[tuple[str, Mark]] = []
         self._base_under: list[Point] = []
         self._flywheels: set[str] = set()
 
@@ -131,14 +126,16 @@ class Automatic:
         height. Pins, bushings and washers that it would have carried are part of what is replaced.
         """
         self._known(body)
-        if any(body == mark.body for mark in self._marks):
+        if body in dict(self._marks):
             raise UserError(f"{self.m.name}: '{body}' is engraved; engrave its solids (shared/shapes/engraving.py)")
         self._replaced[body] = list(solids)
 
     def join(
         self, body: str, outline: cq.Wire, at: Point = (0.0, 0.0), holes: Sequence[cq.Wire] = (), sharp: bool = False
     ) -> None:
-        """Make a closed outline (mm, the body's frame, z = 0) a part of its plate; others keep clear of its hull.
+        """Make a closed outline (mm, the body's frame, z = 0) a part of its plate.
+
+        Others keep clear of its hull.
 
         ``at`` is the place of the joint whose eye it carries; joints that no outline carries are linked as usual.
         ``sharp`` leaves its edges as they are.
@@ -149,7 +146,7 @@ class Automatic:
         self._plan_anew()
 
     def engrave(self, body: str, word: str, at: tuple[float, float], height: float | None = None) -> None:
-        """Engrave ``word`` into the upper face of a plate, its middle ``at`` (x, y) in the frame of ``body`` (mm).
+        """Engrave ``word`` into a plate's upper face, its middle ``at`` (x, y) in the frame of ``body`` (mm).
 
         ``height`` of the letters (mm); by default they go with the eyes. Raises UserError for letters that there are
         not, and when it is built where the word is not all on the plate.
@@ -159,10 +156,10 @@ class Automatic:
         refuse_letters(self.m.name, word)
         if body in self._replaced:
             raise UserError(f"{self.m.name}: '{body}' is replaced; engrave its solids (shared/shapes/engraving.py)")
-        self._marks.append(Wish(body, word, at, height))
+        self._marks.append((body, Mark(word, *at, height or 0.0)))
 
     def base_under(self, *places: Point) -> None:
-        """Let the base plate and roads on it reach places (x, y) of ground (mm), besides all that stands on it.
+        """Let the base plate and roads on it reach places (x, y) of ground (mm) besides what stands on it.
 
         Raises UserError for a place that is not finite.
         """
@@ -177,7 +174,7 @@ class Automatic:
         Where mechanism.py gives it no mass, that is estimated. Raises UserError for the last body that moves.
         """
         self._known(body)
-        wished = [self._materials, self._layers, self._replaced, {mark.body for mark in self._marks}]
+        wished = [self._materials, self._layers, self._replaced, dict(self._marks)]
         if any(body in wishes for wishes in wished):
             raise UserError(
                 f"{self.m.name}: '{body}' has a material, a layer, a word or solids, so it cannot be left out too"
@@ -234,8 +231,9 @@ class Automatic:
 
     @cached_property
     def layout(self) -> Layout:
-        """Return what is to be built, with styluses as tall as the layers allow. Raises UserError if no layers are
-        possible.
+        """Return what is to be built, with styluses as tall as the layers allow.
+
+        Raises UserError if no layers are possible.
         """
         return self._decided[0]
 
@@ -263,9 +261,10 @@ class Automatic:
         return heights_of
 
     def solids(self, engraved_too: bool = True) -> Bodies:
-        """Return every piece by the body it moves with, in mm; the first of each list is the body's main piece.
-        ``on_stand()`` adds a stand. ``engraved_too``: the base with its names, rule and dial, which cost as much as a
-        link.
+        """Return every piece by the body it moves with, in mm.
+
+        The first of each list is the body's main piece. ``on_stand()`` adds a stand. ``engraved_too``: the base with
+        its names, rule and dial, which cost as much as a link.
         """
         if self.along is not None:
             return self._solids_along(self.along)
@@ -371,8 +370,9 @@ class Automatic:
 def automatic(
     m: Mechanism, pin: float | None = None, solution: Solution | None = None, fit: Fit | None = None
 ) -> Automatic:
-    """Return parts of ``m``, planned from ``solution``; by default from the motion of the mechanism's folder, or of its
-    variant that is made.
+    """Return parts of ``m``, planned from ``solution``.
+
+    By default that is the motion of the mechanism's folder, or of its variant that is made.
 
     ``pin``: diameter (mm) of its pins; by default it follows from the links. ``fit``: clearances (mm), such as
     ``Fit(running=0.3)`` for printed parts; by default they follow from the pins. Raises UserError where it cannot move.

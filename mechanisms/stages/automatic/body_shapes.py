@@ -6,27 +6,20 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import Item, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
+from mechanisms.stages.automatic.layout.items import Heights, Item, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Plan
 from mechanisms.stages.automatic.layout.planar import Rounded, convex_hull
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded
 from shared.shapes.kernel import first_sound
 from shared.shapes.link import Eye, link, plate_link, with_eyes
-from shared.shapes.outline import hull_holds, inset_corners
+from shared.shapes.outline import Point, hull_holds, inset_corners
 from shared.shapes.solid import placed
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-    from shared.shapes.outline import Point
-
 
 # The plate of a body: a bar between two eyes, a plate round more of them, by what outline its eyes have (rmm).
 
@@ -65,7 +58,7 @@ def body_shape(eyes: list[PlacedEye], thickness: float) -> tuple[cq.Workplane, i
 
 
 def _outermost(corners: list[int], eyes: list[PlacedEye]) -> list[int]:
-    """Return the corners whose eyes lie in no other eye and not in the hull round the others, in their order."""
+    """Return the corners whose eyes lie in no other eye and not in the hull of the others, in order."""
     circles = {k: (eyes[k][0], eyes[k][1], eyes[k][2].radius) for k in corners}
     for k in corners:
         if any(hull_holds([circle], circles[k]) for other, circle in circles.items() if other != k):
@@ -107,8 +100,9 @@ def first_made(ways: Sequence[Callable[[], cq.Workplane]]) -> cq.Workplane:
 
 
 def _plate(corners: list[PlacedEye], inner: list[PlacedEye], thickness: float) -> tuple[cq.Workplane, int]:
-    """Return a plate with curved sides and a window where it is wide, else one with straight sides; its number of
-    windows.
+    """Return a plate with curved or straight sides, and its number of windows.
+
+    Sides are curved, with a window, where it is wide.
     """
     points = np.array([[x, y] for x, y, _ in corners])
     sides = np.roll(points, -1, axis=0) - points
@@ -128,8 +122,9 @@ def _plate(corners: list[PlacedEye], inner: list[PlacedEye], thickness: float) -
 
 
 def _rims(corners: list[PlacedEye], points: np.ndarray, lengths: np.ndarray, waist: float) -> list[float] | None:
-    """Return insets of the window's sides that leave an even band round it and enough round each eye; None if it is too
-    small.
+    """Return insets of the window's sides that leave an even band round it and enough round each eye.
+
+    None if it is too small.
     """
     radii = np.array([eye.radius for _, _, eye in corners])
     edge = (radii + np.roll(radii, -1)) / 2 - lengths**2 / (8 * waist)  # of the plate, from the line of two joints
@@ -182,7 +177,7 @@ LONG = 2.4
 
 @dataclass(frozen=True)
 class _Yoke:
-    """Half the slot's travel and the radius of its wall; the other eyes (x, y, radius), the nearest first; rmm."""
+    """A slot's half travel and wall radius; the other eyes (x, y, radius), the nearest first (rmm)."""
 
     half: float
     wall: float
@@ -223,7 +218,9 @@ class _Yoke:
 
 
 def yoke_shape(eyes: list[PlacedEye], ends: list[tuple[float, float]], thickness: float) -> cq.Workplane | None:
-    """Return the plate from z = 0 up, in the body's frame; ``ends`` are the middles of the slot's ends, an eye at each.
+    """Return the plate from z = 0 up, in the body's frame.
+
+    ``ends`` are the middles of the slot's ends, an eye at each.
 
     None where other eyes than one or two are beside the slot, or these lie so that a T is no better than a plate.
     """

@@ -5,14 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.curves import curve_path, on_body, set_back, turns_left
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import build, kind
+from mbsd import Mechanism, Solution
+from mbsd.cams import CamProfile
+from mbsd.model.body import Marker
+from mbsd.model.force import Force
+from mbsd.model.joint import Joint
+from mechanisms.stages.automatic.layout.curves import axes_of, curve_path, on_body, set_back, turns_left
+from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Levels, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Plan, build, kind
 from mechanisms.stages.automatic.layout.planar import Rounded, around, disc
 from mechanisms.stages.automatic.layout.sizes import CLEAR, Extent, distance, extent
 from mechanisms.stages.automatic.pins.free_bodies import Face
@@ -24,17 +28,6 @@ from shared.shapes.outline import circle
 from shared.shapes.solid import placed
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism, Solution
-    from mbsd.cams import CamProfile
-    from mbsd.model.body import Marker
-    from mbsd.model.force import Force
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-
 
 # Bodies whose plate is a wheel or a cam: what such joints have in common.
 
@@ -131,13 +124,8 @@ class Cam(Feature):
 
 
 @kind("cam_roller")
-def rollers(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """Return one feature for each joint."""
-    return [_cam(m, joint, layout) for joint in joints]
-
-
 @kind("cam_flat")
-def faces(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
+def gather_cams(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
     """Return one feature for each joint."""
     return [_cam(m, joint, layout) for joint in joints]
 
@@ -159,18 +147,20 @@ def _cam(m: Mechanism, joint: Joint, layout: Layout) -> Cam:
 
 
 def cut_outline(m: Mechanism, joint: Joint, marker: Marker, metre: float) -> np.ndarray:
-    """Return (n, 2) the outline of a joint's cam about its centre, in the axes of the body of ``marker``, with a
-    ``metre`` as the unit. Raises UserError for a cam that cannot be cut.
+    """Return (n, 2) the outline of a joint's cam about its centre, a ``metre`` as the unit.
+
+    It is in the axes of the body of ``marker``. Raises UserError for a cam that cannot be cut.
     """
     profile = _profile(joint)
     if profile.undercut:
         raise UserError(f"{m.name}: cam of joint '{joint.name}' cannot be cut: {profile.problems[0]}")
-    c, s = math.cos(marker.angle), math.sin(marker.angle)
-    return metre * profile.outline @ np.array([[c, s], [-s, c]])
+    return metre * profile.outline @ axes_of(marker)
 
 
 def pushing_cam(touch: Joint, layout: Layout) -> list[Feature]:
-    """Return the cam of a contact whose closed curve pushes a disc that may leave it; none if the disc runs inside.
+    """Return the cam of a contact whose closed curve pushes a disc that may leave it.
+
+    Returns an empty list if the disc runs inside.
 
     A point is the bare end of a pin, and the cam is smaller by that pin's radius. Raises UserError where nothing of
     the cam would be left.
@@ -207,7 +197,7 @@ def with_room(path: np.ndarray, back: float, touch: Joint | Force, layout: Layou
 
 
 def pushing_extent(touch: Joint | Force) -> Extent:
-    """Return what :func:`roller_extent` does, for a contact with a closed curve."""
+    """Return what :func:`cam_extent` does, for a contact with a closed curve."""
     away, roller = np.hypot(*np.array(touch.params["points"], dtype=float).T), touch.params["radius"]
     least = ((float(away.min()), BASE), (roller, ROLLER)) if roller > 0 else ((float(away.min()), BASE + POINT),)
     return Extent(((touch.i, float(away.max())), (touch.j, roller)), least)
@@ -233,20 +223,15 @@ def _profile(joint: Joint) -> CamProfile:
 
 
 @extent("cam_roller")
-def roller_extent(joint: Joint, solution: Solution) -> Extent:
-    """Return the disc and roller; a hub in the base circle, a pin in the roller."""
-    profile = _profile(joint)
-    base, roller = profile.sizes["base_radius"], profile.sizes["roller_radius"]
-    farthest = float(np.hypot(*profile.outline.T).max())
-    return Extent(((joint.i, farthest), (joint.j, roller)), ((base, BASE), (roller, ROLLER)))
-
-
 @extent("cam_flat")
-def face_extent(joint: Joint, solution: Solution) -> Extent:
-    """Return the disc; a hub in its base circle."""
+def cam_extent(joint: Joint, solution: Solution) -> Extent:
+    """Return the disc with a hub in its base circle, and the roller with a pin in it where there is one."""
     profile = _profile(joint)
-    farthest = float(np.hypot(*profile.outline.T).max())
-    return Extent(((joint.i, farthest),), ((profile.sizes["base_radius"], BASE),))
+    farthest, base = float(np.hypot(*profile.outline.T).max()), (profile.sizes["base_radius"], BASE)
+    if profile.flat:
+        return Extent(((joint.i, farthest),), (base,))
+    roller = profile.sizes["roller_radius"]
+    return Extent(((joint.i, farthest), (joint.j, roller)), (base, (roller, ROLLER)))
 
 
 # The solids of a cam (rmm): its disc, and the roller on its pin, or the shoe.
@@ -321,8 +306,10 @@ class GenevaDrive(Feature):
         return [*axes, Anchor(self.crank, *self.pin.pin_at, eye)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """Yield the wheel, the pin through it, the locking disc; and a rule: the crank, whose disc stands in the
-        wheel's layer, is in another one even where its arm never comes near the wheel.
+        """Yield the wheel, the pin through it and the locking disc, and a rule.
+
+        The rule: the crank, whose disc stands in the wheel's layer, is in another one even where its arm never comes
+        near the wheel.
         """
         both, between = frozenset((self.crank, self.wheel)), Reach((self.crank, self.wheel))
         wheel, lock = disc(*self.wheel_at[:2], self.shape.rim), disc(*self.crank_at[:2], self.shape.lock)
@@ -367,8 +354,7 @@ def extent_of(joint: Joint, solution: Solution) -> Extent:
     apart, radius, slots = distance(joint, solution), joint.params["radius"], joint.params["slots"]
     rim = apart * math.cos(math.pi / slots)
     return Extent(
-        ((joint.i, radius), (joint.j, rim)),
-        ((apart - radius, HUB), (radius, PIN_CIRCLE), (apart - rim, NEAR)),
+        ((joint.i, radius), (joint.j, rim)), ((apart - radius, HUB), (radius, PIN_CIRCLE), (apart - rim, NEAR))
     )
 
 
@@ -393,10 +379,6 @@ def geneva_solids(drive: GenevaDrive, plan: Plan, heights: Heights) -> None:
     disc = shape.locking_disc(heights.thickness, hole)
     low = heights.bottom(drive.wheel)
     plan.make(drive.crank, f"lock_{drive.name}", placed(disc, x, y, low, math.degrees(angle)), "steel", 1)
-    if heights.bottom(drive.crank) < low:
-        start, end = heights.top(drive.crank), low
-    else:
-        start, end = low + heights.thickness, heights.bottom(drive.crank)
-    start, end = start + fit.seat, end - fit.seat
+    start, end = heights.between(drive.crank, drive.wheel, fit.seat, fit.seat)
     collar = extruded(circle(0, 0, hole + COLLAR), end - start).cut(bore(2 * hole, 0.0, end - start))
     plan.make(drive.crank, f"collar_{drive.name}", placed(collar, x, y, start), "steel", 1)

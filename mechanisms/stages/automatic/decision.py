@@ -1,25 +1,20 @@
-"""Decisions before anything is built: pins, layers, springs and bridges; or why no order of layers exists."""
+"""Decisions before anything is built: pins, layers, springs, bridges; or why there is no order."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice, product
-from typing import TYPE_CHECKING, Protocol
 
 from mechanisms.stages.automatic.layout.layers import ALL, Purse, Undecided, blocking, find_layers
-from mechanisms.stages.automatic.layout.layout import Springs
+from mechanisms.stages.automatic.layout.layout import Layout, Springs
+from mechanisms.stages.automatic.layout.sizes import Sizes
 from mechanisms.stages.automatic.pins.bridges import Bridge, bridges_over, may_hang
 from mechanisms.stages.automatic.pins.free_bodies import RimMark
 from mechanisms.stages.automatic.pins.pins import webbed
 from mechanisms.stages.automatic.slides.curved_slots import CurvedSlot
 from shared.stage.console import Shown, warn
 from shared.stage.errors import UserError
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.sizes import Sizes
-
 
 # Why there is no order of layers: the fewest bodies that cannot pass each other, and what to do.
 
@@ -33,8 +28,9 @@ CROSSED = (
 
 
 def refusal(layout: Layout, fixed: Mapping[str, int], purse: Purse | None = None) -> str:
-    """Return a sentence or two, of meetings that together leave no order: without any one of them there would be
-    one.
+    """Return a sentence or two on meetings that together leave no order.
+
+    Without any one of them there would be one.
     """
     items, kept = layout.items, _kept(layout, fixed, purse)
     bodies = _bodies(layout, kept)
@@ -112,22 +108,19 @@ MOST_WEBS = 60
 """So many ways to build a body of two webs are tried."""
 
 
-class LayoutOf(Protocol):
-    """Makes the layout with pins of a size, with springs, and with tubes beside arms."""
+type LayoutOf = Callable[..., Layout]
+"""Makes the layout with pins of a size, with springs, and with tubes beside arms.
 
-    def __call__(
-        self, size: Sizes, springs: Springs, tubes: bool, tall: bool = False, pointers: bool = False
-    ) -> Layout:
-        """``tall``: with styluses that stand up, not flush ones; ``pointers``: with those of points on rims."""
-        ...
-
-
+``tall``: with styluses that stand up, not flush ones; ``pointers``: with those of points on rims.
+"""
 type Outcome = tuple[Layout, dict[str, int]]
 
 
 def decided(layout_of: LayoutOf, wishes: Sequence[Sizes], fixed: Mapping[str, int]) -> Outcome:
-    """Return the layout, and the layers and choices. ``wishes`` are sizes, the most wanted first; ``fixed`` are layers
-    that are asked for. Raises UserError that names what cannot pass each other if there is no order with any of them.
+    """Return the layout, and the layers and choices. ``wishes`` are sizes, the most wanted first.
+
+    ``fixed`` are layers that are asked for. Raises UserError that names what cannot pass each other if there is no
+    order with any of them.
     """
     tried = _Tried(layout_of, fixed)
     try:
@@ -211,8 +204,9 @@ class _Tried:
         return None
 
     def with_webs(self, wishes: Sequence[Sizes]) -> Outcome | None:
-        """Return the outcome with one body of two webs, the thickest and then the thinnest pins: the fewest bridges,
-        then layers.
+        """Return the outcome with one body of two webs: the fewest bridges, then the fewest layers.
+
+        The thickest pins are tried, then the thinnest.
 
         One of the bodies that leave no order must be the one; none is tried where there are too many ways.
         """
@@ -245,8 +239,9 @@ class _Tried:
         return best if bridges else self.with_styluses(best)
 
     def with_styluses(self, low: Outcome) -> Outcome:
-        """Return styluses as tall as layers allow without a layer more; else pointers alone, if there is room for
-        them.
+        """Return styluses as tall as layers allow without a layer more.
+
+        Else pointers alone, if there is room for them.
         """
         layout, least = low
         if not layout.m.traces:

@@ -1,16 +1,19 @@
-"""The features of a mechanism, from its joints, forces, contacts and drivers, and the layout that holds them."""
+"""The features of a mechanism, from its joints, forces, contacts and drivers, and its layout."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import mechanisms.stages.automatic.kinds  # noqa: F401  (enters them)
-from mechanisms.stages.automatic.layout.items import Anchor
+from mbsd import Mechanism
+from mbsd.model.force import Force
+from mbsd.model.joint import Joint
+from mechanisms.stages.automatic.body_shapes import Joined
+from mechanisms.stages.automatic.layout.items import Anchor, Heights
 from mechanisms.stages.automatic.layout.layout import Feature, Layout
-from mechanisms.stages.automatic.layout.plan import CONTACT_KINDS, DRIVER_KINDS, FORCE_KINDS, KINDS
-from mechanisms.stages.automatic.layout.sizes import ROD
+from mechanisms.stages.automatic.layout.plan import CONTACT_KINDS, DRIVER_KINDS, FORCE_KINDS, KINDS, Plan
+from mechanisms.stages.automatic.layout.sizes import ROD, Kinds
 from mechanisms.stages.automatic.pins.free_bodies import free_bodies, styluses, weights
 from mechanisms.stages.automatic.pins.pins import add_poses
 from mechanisms.stages.automatic.pins.stops import stops
@@ -21,15 +24,6 @@ from mechanisms.stages.automatic.wheels.gears import with_own_layers
 from shared.shapes.link import Eye
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism
-    from mbsd.model.force import Force
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.body_shapes import Joined
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.plan import Gather, Plan
-
 
 # The features of a mechanism: of its joints, forces, contacts and drivers by their kinds; eyes where a body is left
 # out.
@@ -59,8 +53,9 @@ class LooseEye(Feature):
 
 
 def gathered(layout: Layout) -> list[Feature]:
-    """Return all features of joints, forces, contacts and drivers. Raises UserError for a kind of joint that has no
-    parts.
+    """Return all features of joints, forces, contacts and drivers.
+
+    Raises UserError for a kind of joint that has no parts.
     """
     m = layout.m
     by_kind: dict[str, list[Joint]] = {}
@@ -91,11 +86,11 @@ def gathered(layout: Layout) -> list[Feature]:
     return features + _loose_eyes(loose, features, layout)
 
 
-def _gather_kinds[Thing: (Force, Joint)](
-    kinds: Mapping[str, Gather[Thing]], m: Mechanism, things: Iterable[Thing], layout: Layout
+def _gather_kinds(
+    kinds: Kinds[Sequence[Feature]], m: Mechanism, things: Iterable[Force | Joint], layout: Layout
 ) -> list[Feature]:
     """Return features of forces, contacts or drivers whose kinds have parts; the others need none."""
-    by_kind: dict[str, list[Thing]] = {}
+    by_kind: dict[str, list[Force | Joint]] = {}
     for thing in things:
         if thing.kind.name in kinds and not layout.apart.intersection(thing.bodies):
             by_kind.setdefault(thing.kind.name, []).append(thing)
@@ -103,7 +98,10 @@ def _gather_kinds[Thing: (Force, Joint)](
 
 
 def _loose_eyes(joints: list[Joint], features: list[Feature], layout: Layout) -> list[Feature]:
-    """Return one for each moving body and place of a joint whose other body is left out, unless something is there."""
+    """Return an eye for each place of a joint on a moving body whose other body is left out.
+
+    None where something is there already.
+    """
     taken = [anchor for feature in features for anchor in feature.anchors(layout)]
     eyes: list[LooseEye] = []
     for joint in joints:

@@ -1,4 +1,4 @@
-"""All kinds of joints, forces and contacts that have automatic parts: to import a module enters its kinds."""
+"""Kinds of joints, forces and contacts with automatic parts: importing a module enters its kinds."""
 
 from mechanisms.stages.automatic import cams  # noqa: F401  (cams and Genevas)
 from mechanisms.stages.automatic.pins import (  # noqa: F401

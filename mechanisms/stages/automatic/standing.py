@@ -6,26 +6,23 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 
 from mechanisms.stages.automatic.layout.plan import free_name
 from mechanisms.stages.automatic.layout.planar import convex_hull
+from mechanisms.stages.automatic.layout.planar import placed as placed_points
+from mechanisms.stages.automatic.layout.sizes import Sizes
+from shared.contract import Mount
 from shared.contract.materials import MATERIALS
+from shared.shapes.bodies import Bodies
 from shared.shapes.build import extruded
 from shared.shapes.facets import facets
 from shared.shapes.kernel import rough_size
 from shared.shapes.outline import circle
 from shared.shapes.solid import Solid, placed
 from shared.shapes.stand import Bolt, bolt, column, drilled, foot, screwed, seated
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.sizes import Sizes
-    from shared.contract import Mount
-    from shared.shapes.bodies import Bodies
-
 
 # The base plate of a machine that stands, and the axes in which it is laid out: x right and y up as it stands.
 
@@ -124,7 +121,7 @@ CHORD, ANGLE = 0.002, 0.4
 
 @dataclass(frozen=True)
 class Hull:
-    """Hull of one solid, in its body's frame: corners (n, 2) round it in the plane, its heights, mass and centre."""
+    """Hull of one solid in its body's frame: corners (n, 2) in the plane, heights, mass and centre."""
 
     corners: np.ndarray
     heights: tuple[float, float]
@@ -158,8 +155,9 @@ class Standing:
 
 
 def standing(bodies: Mapping[str, Sequence[Solid]], poses: Mapping[str, np.ndarray], upright: Upright) -> Standing:
-    """Return the masses that stand, over the ``poses`` (T, 3) (mm, rad) of the bodies; of one without poses nothing is
-    known.
+    """Return the masses that stand, over the ``poses`` (T, 3) (mm, rad) of the bodies.
+
+    A body without poses is left out.
     """
     still = np.zeros((1, 3))
     lows, highs, moving = [], [], np.inf
@@ -182,11 +180,12 @@ def standing(bodies: Mapping[str, Sequence[Solid]], poses: Mapping[str, np.ndarr
 
 
 def _seen(place: np.ndarray, poses: np.ndarray, upright: Upright | None) -> np.ndarray:
-    """Return (T, 2) a place of a body's frame over its poses (T, 3), as right and up; without a turn as it is."""
-    c, s = np.cos(poses[:, 2]), np.sin(poses[:, 2])
-    x = poses[:, 0] + c * place[0] - s * place[1]
-    y = poses[:, 1] + s * place[0] + c * place[1]
-    return np.column_stack([x, y]) if upright is None else upright.seen(np.column_stack([x, y]))
+    """Return (T, 2) a place of a body's frame over its poses (T, 3), as right and up.
+
+    Without a turn as it is.
+    """
+    way = placed_points(place[None], poses)[:, 0]
+    return way if upright is None else upright.seen(way)
 
 
 def named(made: Sequence[Solid], bodies: Mapping[str, Sequence[Solid]]) -> list[Solid]:
@@ -259,7 +258,7 @@ def dimensions(plate: BackPlate, load: Standing) -> Dimensions:
 
 
 def foot_spans(load: Standing, ground: float) -> tuple[Span, Span, Span]:
-    """Return where what stands on ``ground`` has to reach, so that it does not tip: right, up, towards the viewer."""
+    """Return how far a foot must reach on ``ground`` not to tip: right, up, towards the viewer."""
     reach = TIPS * (load.centres[:, 1] - ground)
     spans = [(float((load.centres[:, k] - reach).min()), float((load.centres[:, k] + reach).max())) for k in range(3)]
     return spans[0], spans[1], spans[2]
@@ -274,8 +273,9 @@ def evened(low: float, high: float, middle: float) -> Span:
 
 
 def screw_places(plate: BackPlate, own: Dimensions, clear: float) -> list[tuple[float, float]]:
-    """Return where screws of a column go into the plate: near the corners of what they share, ``clear`` (radius) of all
-    holes of its face.
+    """Return where screws of a column go into the plate, near the corners of what they share.
+
+    They stay ``clear`` (radius) of all holes of its face.
     """
     (x0, x1), (y0, y1) = _shared(plate, own, 2.2 * clear)
     grid = [(x, y) for x in np.linspace(x0, x1, 9) for y in np.linspace(y0, y1, 13)]
@@ -382,7 +382,7 @@ class Stand:
         return seated(shape, feet, "y", _size(y), below)
 
     def _bolt(self, wish: float, through: float, into: float, seat: float) -> Bolt:
-        """Return a screw that goes through so much matter, its head below the face, and ``into`` what is behind."""
+        """Return a screw through so much matter and ``into`` what is behind, its head below the face."""
         longest = through - 1.1 * wish + seat + 0.85 * into
         return bolt(wish * self.ratio, longest * self.ratio).at_scale(1.0 / self.ratio)
 
@@ -451,8 +451,10 @@ class GroundSlab:
 
 
 def hold(made: Bodies, mount: Mount, plate: BackPlate | None, poses: Mapping[str, np.ndarray], sizes: Sizes) -> None:
-    """Note how parts stand, and what makes the stand of their back ``plate`` (mm), or of ground without one, over
-    ``poses`` (T, 3) (mm, rad); nothing does where they lie or hang at a wall.
+    """Note how parts stand, and what makes their stand.
+
+    That is the stand of their back ``plate`` (mm), or of ground without one, over ``poses`` (T, 3) (mm, rad); nothing
+    where they lie or hang at a wall.
     """
     made.mount, upright = (mount.kind, mount.up), Upright.from_mount(mount)
     if mount.kind not in ("stand", "ground"):

@@ -24,8 +24,10 @@ PARTS = 8
 
 @dataclass(frozen=True)
 class Rolling:
-    """Seen from the first body, the centre of the second is at ``distance`` (mm) from a point of it in the direction
-    phi (rad), and the second is turned by ``turn + ratio phi``. No point of it is farther from there than ``off`` (mm).
+    """Ideal rolling of a second body on a first one, seen from the first.
+
+    The second one's centre is at ``distance`` (mm) from a point of the first in the direction phi (rad), and it is
+    turned by ``turn + ratio phi``. No point of it is farther from there than ``off`` (mm).
     """
 
     distance: float
@@ -56,11 +58,12 @@ class Rolling:
 
 
 def rolling(path: RelativePath, about: np.ndarray, ratio: float, reach: float) -> Rolling | None:
-    """Return ideal rolling about the point ``about`` (mm, frame of the first body) with that ratio, next to the motion.
+    """Return ideal rolling about ``about`` (mm, first body's frame) with that ratio, next to the motion.
 
-    ``off`` holds for points within ``reach`` (mm) of the second body's centre and for all time: at PARTS times in
-    each interval it is looked at, and between them a function is within h^2 / 8 max |f''| of the larger of its ends.
-    None where the centre passes through ``about``, or samples jump.
+    It rolls about the point ``about`` (mm, frame of the first body). ``off`` holds for points within ``reach`` (mm) of
+    the second body's centre and for all time: at PARTS times in each interval it is looked at, and between them a
+    function is within h^2 / 8 max |f''| of the larger of its ends. None where the centre passes through ``about``, or
+    samples jump.
     """
     mover = path.mover
     if len(mover.first) + 1 != len(mover.time):
@@ -113,7 +116,10 @@ FEWEST_PITCHES = 2.0
 
 @dataclass(frozen=True)
 class Gears:
-    """Two wheels of a gear pair: their bodies, centres (mm, in the bodies' frames), teeth; a ring is the first."""
+    """Two wheels of a gear pair: their bodies, centres (mm, in the bodies' frames), teeth.
+
+    A ring is the first.
+    """
 
     bodies: tuple[str, str]
     centres: tuple[np.ndarray, np.ndarray]
@@ -127,11 +133,11 @@ class Gears:
 
 
 type Meshes = dict[frozenset[str], list[Gears]]
-"""By pair of bodies."""
+"""Gear pairs by pair of bodies."""
 
 
 def meshes(motion: Motion, pieces: list[MeshPiece]) -> Meshes:
-    """Return the gear pairs of a motion, with the numbers of teeth that data.json has, else those of the meshes."""
+    """Return the gear pairs of a motion, with numbers of teeth from data.json, else from the meshes."""
     by_bodies: Meshes = {}
     for joint in motion.joints.values():
         shape = joint.shape
@@ -149,9 +155,7 @@ def meshes(motion: Motion, pieces: list[MeshPiece]) -> Meshes:
 
 
 def least_in_mesh(sweep: Sweep, known: Meshes, where: dict[str, BodyPath]) -> Least | None:
-    """Return the least gap of two pieces over the motion, if they are wheels in mesh and one pitch shows it; else
-    None.
-    """
+    """Return the least gap of two wheels in mesh over the motion, if one pitch shows it; else None."""
     pieces = {sweep.mover.body: sweep.mover, sweep.still.body: sweep.still}
     for gears in known.get(frozenset(pieces), []):
         first, second = (pieces[body] for body in gears.bodies)
@@ -201,8 +205,9 @@ def _least(sweep: Sweep, gears: Gears, first: MeshPiece, second: MeshPiece, wher
 
 
 def _one_pitch(ideal: Rolling, gears: Gears, pitch: float, off: float) -> RelativePath:
-    """Return the second wheel's frame about its centre, while that goes on by a pitch in a second, seen from the
-    first.
+    """Return the second wheel's frame about its centre, seen from the first.
+
+    The centre goes on by a pitch in a second.
     """
     time = np.linspace(0.0, 1.0, STEPS + 1)
     angle = ideal.start + pitch * time
@@ -232,7 +237,7 @@ class Band:
     piece: MeshPiece
     path: BodyPath
     axes: dict[str, tuple[np.ndarray, np.ndarray]]
-    """By body of a pulley: the pulley's centre in the band's frame and in the body's (mm)."""
+    """Centres by body of a pulley: in the band's frame and in the body's (mm)."""
     own: frozenset[tuple[str, str]]
     """Body and name of the pieces that hold the belt: its pulleys, which it touches."""
 
@@ -272,9 +277,7 @@ def bands(parts: Parts, motion: Motion, where: Mapping[str, BodyPath]) -> Iterat
 
 
 def band(way: BeltPath, wide: float, high: float) -> np.ndarray:
-    """Return (n, 3, 3): facets round all places within ``wide`` of the belt in the plane, and ``high`` over and under
-    it.
-    """
+    """Return (n, 3, 3) facets round all places within ``wide`` of the belt and ``high`` over and under it."""
     import manifold3d
 
     starts = np.concatenate([[0.0], np.cumsum(way.parts)])
@@ -301,8 +304,9 @@ def _holding(parts: Parts, name: str) -> tuple[frozenset[tuple[str, str]], Held 
 
 
 def _path(joint: JointMotion, where: Mapping[str, BodyPath]) -> tuple[BodyPath, float]:
-    """Return the motion of the first centre and of the line of centres, and the distance of the centres at the start
-    (mm).
+    """Return the motion of the first centre and of the line of centres, and their distance (mm).
+
+    The distance is that at the start.
     """
     assert joint.shape is not None
     ends = [

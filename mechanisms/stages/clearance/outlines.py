@@ -24,7 +24,10 @@ class Outline(Tree):
     """Segments of the shadow's edge, relative to ``centre``; the shadow is on the left of each."""
 
     def __init__(self, edges: np.ndarray, times: np.ndarray, centre: np.ndarray, radius: float) -> None:
-        """``edges`` (n, 2, 2): their ends (mm); ``times`` (n,): of how many facets more each is a side, on its left."""
+        """``edges`` (n, 2, 2): their ends (mm).
+
+        ``times`` (n,): of how many facets more each is a side, on its left.
+        """
         self.edges, self.times = edges, times
         segments = _divided(edges - centre, longest_in(radius))
         along = (segments[:, 1] - segments[:, 0]) @ np.array([1.0, 1j])
@@ -34,8 +37,9 @@ class Outline(Tree):
 
 
 def outline(piece: MeshPiece, low: float, high: float) -> Outline | None:
-    """Return the outline of what ``piece`` has between two heights (mm); None if that is nothing. It is kept with the
-    piece: many others have the same heights in common with it.
+    """Return the outline of what ``piece`` has between two heights (mm); None if that is nothing.
+
+    It is kept with the piece: many others have the same heights in common with it.
     """
     span = max(low, piece.z_range[0]), min(high, piece.z_range[1])
     if span not in piece.outlines:
@@ -54,8 +58,9 @@ def _outline(piece: MeshPiece, low: float, high: float) -> Outline | None:
 
 
 def edge_of(facets: np.ndarray, piece: MeshPiece) -> Outline | None:
-    """Return the edge of the shadow of ``facets`` (n, 3, 3) of a piece, which all look up or all look down; None
-    without any.
+    """Return the edge of the shadow of ``facets`` (n, 3, 3) of a piece; None without any.
+
+    All of them look up, or all look down.
     """
     index = np.arange(3 * len(facets)).reshape(-1, 3)
     (x, y), (u, v) = (facets[0, k, :2] - facets[0, 0, :2] for k in (1, 2))
@@ -63,7 +68,7 @@ def edge_of(facets: np.ndarray, piece: MeshPiece) -> Outline | None:
 
 
 def _edge(piece: MeshPiece, corners: np.ndarray, up: np.ndarray) -> Outline | None:
-    """Return the edge of the shadow of facets ``up`` (m, 3) whose numbers run counter-clockwise seen from above."""
+    """Return the edge of the shadow of facets ``up`` (m, 3), counter-clockwise seen from above."""
     edges = np.concatenate([up[:, (0, 1)], up[:, (1, 2)], up[:, (2, 0)]])
     grid = np.round(corners[:, :2] / (ROUNDING * piece.radius))
     _, first, place = np.unique(grid, axis=0, return_index=True, return_inverse=True)
@@ -102,7 +107,7 @@ def _between(piece: MeshPiece, low: float, high: float) -> tuple[np.ndarray, np.
 
 
 def _unmatched(edges: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return pairs of numbers below ``count`` (n, 2) that are there more often than turned round, and how much more."""
+    """Return pairs of numbers below ``count`` (n, 2) met more often than reversed, and how much more."""
     edges = edges[edges[:, 0] != edges[:, 1]]
     keys, number = np.unique(edges[:, 0] * count + edges[:, 1], return_counts=True)
     forth = np.stack([keys // count, keys % count], axis=1)
@@ -159,8 +164,9 @@ class OutlineSearch(Search):
 
 
 def nearest(p: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the distance (n,) of segments p and q (n, 2; x + i y), 0 where they cross, and the way (n,) from p to
-    q.
+    """Return the distance (n,) of segments p and q (n, 2; x + i y), and the way (n,) from p to q.
+
+    The distance is 0 where they cross.
     """
     ways = np.stack([-_way(q[:, 0], p), -_way(q[:, 1], p), _way(p[:, 0], q), _way(p[:, 1], q)])
     size = np.abs(ways)
@@ -211,9 +217,10 @@ def least_by_outlines(sweep: Sweep, gap: float, time: float, poses: int) -> Leas
 
 
 def proven_by_outlines(sweep: Sweep, gap: float, time: float) -> float:
-    """Return how far (mm) outlines prove the pieces to stay apart, of the ``gap`` that was measured at ``time``.
+    """Return how far (mm) outlines prove the pieces apart, of the ``gap`` measured at ``time``.
 
-    Walls that lean or bulge bring the outlines nearer than the pieces, so that it may be much less than the least gap.
+    ``gap`` was measured at ``time``. Walls that lean or bulge bring the outlines nearer than the pieces, so that it may
+    be much less than the least gap.
     """
     both = _outlines(sweep, gap)
     if both is None:
@@ -237,8 +244,9 @@ def _measured(sweep: Sweep, least: Least, gap: float, time: float) -> tuple[floa
 
 
 def _outlines(sweep: Sweep, beyond: float) -> tuple[Outline, Outline] | None:
-    """Return outlines of both pieces within ``beyond`` (mm) of their common heights; None if none, or one covers the
-    other.
+    """Return outlines of both pieces within ``beyond`` (mm) of their common heights.
+
+    None if none, or one covers the other.
     """
     low = max(sweep.still.z_range[0], sweep.mover.z_range[0]) - beyond
     high = min(sweep.still.z_range[1], sweep.mover.z_range[1]) + beyond
@@ -273,8 +281,9 @@ BESIDE = 0.2
 
 
 def never_over(sweep: Sweep, gap: float) -> bool:
-    """Return True if it is proven that no horizontal face of one piece is within ``gap`` (mm) straight over or under a
-    facet of the other that faces it, at any time. False proves nothing.
+    """Return True if no horizontal face of a piece is ever within ``gap`` (mm) over or under the other.
+
+    That is proven of facets of the other that face it. False proves nothing.
     """
     for sign in (1.0, -1.0):
         under, over = _near(sweep.still, sweep.mover, sign, gap)
@@ -285,8 +294,10 @@ def never_over(sweep: Sweep, gap: float) -> bool:
 
 
 def _near(lying: MeshPiece, other: MeshPiece, sign: float, gap: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return horizontal faces of ``lying`` that look up (``sign`` 1) or down (-1), and the facets of ``other`` that
-    face them; of both only those that have the other within ``gap`` in height.
+    """Return horizontal faces of ``lying`` and the facets of ``other`` that face them.
+
+    The faces look up (``sign`` 1) or down (-1). Of both there are only those that have the other within ``gap`` in
+    height.
     """
     faces, facets = facing(lying, other, sign)
     low, high = (sign * facets[:, :, 2]).min(axis=1), (sign * facets[:, :, 2]).max(axis=1)

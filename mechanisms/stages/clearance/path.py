@@ -1,4 +1,4 @@
-"""The motion of two pieces against each other: its path, the scale, common axes, and pieces that stay far apart."""
+"""The motion of two pieces against each other: path, scale, common axes, pieces far apart."""
 
 from __future__ import annotations
 
@@ -6,21 +6,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
 
+from mechanisms.stages.clearance.pieces import MeshPiece
 from shared.contract import Motion, Parts
+from shared.contract.loads import Shape
+from shared.contract.motion import BodyMotion, JointMotion
 from shared.shapes.standards import Fit
 from shared.shapes.units import mm
-
-if TYPE_CHECKING:
-    from mechanisms.stages.clearance.pieces import MeshPiece
-    from shared.contract.loads import Shape
-    from shared.contract.motion import BodyMotion, JointMotion
-    from shared.stage.scale import Scale
-
+from shared.stage.scale import Scale
 
 # The motion of a model at a scale: that of the machine, geometrically similar; angles and times stay. And what a
 # refusal of its parts adds.
@@ -31,8 +27,9 @@ OF_SHAPE = ("radius_first", "radius_second", "pin_radius", "length")
 
 
 def at_scale(motion: Motion, ratio: float) -> Motion:
-    """Return a motion as the proof of clearance reads it, ``ratio`` times as large; loads, masses and energies stay
-    those of the machine.
+    """Return a motion as the proof of clearance reads it, ``ratio`` times as large.
+
+    Loads, masses and energies stay those of the machine.
     """
     bodies = {name: _body(body, ratio) for name, body in motion.bodies.items()}
     joints = {name: _joint(joint, ratio) for name, joint in motion.joints.items()}
@@ -61,14 +58,12 @@ def _times(values: list[float], ratio: float) -> list[float]:
 
 
 def what_shrinks(scale: Scale) -> str:
-    """Return the end of a refusal of parts at ``scale``: why a parts.py that fits its machine need not fit the
-    model.
-    """
+    """Return the end of a refusal at ``scale``: why a parts.py that fits its machine may not fit here."""
     running = Fit().running
     return (
-        f"what a parts.py gives in millimetres, clearances too, shrinks with the machine: Fit(running="
-        f"{running / scale.ratio:.3g}) leaves {running:g} mm at {scale}, and fit_at_scale(pin) of mechanisms.automatic "
-        "chooses for any scale; without a parts.py pins and fits are chosen for the scale"
+        f"millimetres in a parts.py, clearances too, shrink with the mechanism. Fit(running="
+        f"{running / scale.ratio:.3g}) leaves {running:g} mm at {scale}; fit_at_scale(pin) of mechanisms.automatic "
+        "chooses for any scale. Without a parts.py, pins and fits are chosen for the scale"
     )
 
 
@@ -218,17 +213,16 @@ class RelativePath:
         """(m,): every mm between a point and the centre adds this to its acceleration (1/s^2)."""
 
     def place(self, k: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """Return (n, 3) the centre's place (mm) and the angle (rad) in the other's frame, at times in intervals
-        ``k``.
+        """Return (n, 3) the centre's place (mm) and the angle (rad) in the other's frame.
+
+        The times lie in intervals ``k``.
         """
         pose = self.mover.within(k, time)
         pose[:, :2] = points(pose, self.centre)
         return relative(pose, self.still.within(k, time))
 
     def bend(self, radius: float) -> float:
-        """Return how far (mm) points within ``radius`` of the centre stray from straight lines in the intervals, in
-        all.
-        """
+        """Return how far (mm) points within ``radius`` of the centre stray from straight lines, in all."""
         return float((self.mover.width**2 / 8 * (self.push + radius * self.spin)).sum())
 
 
@@ -241,11 +235,11 @@ def _largest(control: np.ndarray, width: np.ndarray, order: int) -> np.ndarray:
 # Axes about which two bodies turn against each other, however they move.
 
 type Axes = dict[frozenset[str], dict[str, np.ndarray]]
-"""By pair of bodies: the axis of their joint, as a point (mm) in the frame of either."""
+"""Axes by pair of bodies: the axis of their joint, as a point (mm) in the frame of either."""
 
 
 def axes_of(motion: Motion, parts: Parts, where: Mapping[str, BodyPath]) -> Axes:
-    """Return axes of bodies that a revolute joint or a rod's end connects, and of those that turn on a common pin."""
+    """Return axes of bodies that a revolute joint or rod's end connects, and of those on a common pin."""
     axes: Axes = {}
     for joint in motion.joints.values():
         if joint.kind != "revolute":

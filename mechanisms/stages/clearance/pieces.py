@@ -23,9 +23,11 @@ _FACTORS = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9,
 
 
 def distinct(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return distinct rows of (n, k) float64, k up to 4: one number of each, and (n,) which of these each row is.
+    """Return distinct rows of (n, k) float64, k up to 4, and (n,) which of these each row is.
 
-    Their order follows from the rows alone. -0.0 and 0.0 are alike; no row is like another that is not.
+    Of each distinct row there is one number.
+
+    k is at most 4. Their order follows from the rows alone. -0.0 and 0.0 are alike; no row is like another that is not.
     """
     bits = np.ascontiguousarray(rows + 0.0).view(np.uint64)
     mixed = np.zeros(len(bits), dtype=np.uint64)
@@ -54,7 +56,10 @@ class Tree:
     """See the file. Facets may be triangles, or segments of an outline; places are in mm."""
 
     def __init__(self, facets: np.ndarray, walls: np.ndarray) -> None:
-        """``facets`` (n, corners, 3); ``walls`` (n,): their normals in the plane, x + i y, as long as they matter."""
+        """``facets`` (n, corners, 3).
+
+        ``walls`` (n,): their normals in the plane, x + i y, as long as they matter.
+        """
         self.leaves = 1 << max(len(facets) - 1, 0).bit_length()
         """Number of leaves; the first of them is the node of this number."""
         padded = np.full((self.leaves, *facets.shape[1:]), np.nan)
@@ -74,7 +79,7 @@ class Tree:
             self.radius[nodes] = np.fmax.reduce(away, axis=1)
             self.low[nodes], self.high[nodes] = low[:, 2], high[:, 2]
         self.reach = np.hypot(*self.centre.T) + self.radius
-        """By node: how far its facets reach from the origin (mm)."""
+        """Reach of the facets of each node from the origin (mm)."""
         self.axis = _axis_of_walls(walls)
         """The unit direction of the boxes' first side, x + i y; the second one is across it."""
         c, s = self.axis.real, self.axis.imag
@@ -110,7 +115,10 @@ def _axis_of_walls(walls: np.ndarray) -> complex:
 
 
 def _order(centres: np.ndarray) -> np.ndarray:
-    """Leaves halved at the middle of each group's longest side, level by level; what is not a number comes last."""
+    """Leaves halved at the middle of each group's longest side, level by level.
+
+    What is not a number comes last.
+    """
     order = np.arange(len(centres))[None]
     while order.shape[1] > 1:
         group = centres[order]
@@ -123,7 +131,10 @@ def _order(centres: np.ndarray) -> np.ndarray:
 
 
 def _halved(t: np.ndarray, longest: float) -> np.ndarray:
-    """Return triangles halved across their longest edge until none is longer than ``longest`` in the plane."""
+    """Return triangles halved across their longest edge until none is longer than ``longest``.
+
+    Lengths are those in the plane.
+    """
     done = []
     while len(t):
         length = np.hypot(*np.moveaxis((np.roll(t, -1, axis=1) - t)[:, :, :2], -1, 0))
@@ -197,7 +208,10 @@ class MeshPiece:
 
     @cached_property
     def upward(self) -> np.ndarray:
-        """(n,): the z component of each facet's normal, times twice its area (mm^2); corners run counter-clockwise."""
+        """(n,): the z component of each facet's normal, times twice its area (mm^2).
+
+        Corners run counter-clockwise.
+        """
         p, q = (self.triangles[:, k, :2] - self.triangles[:, 0, :2] for k in (1, 2))
         return p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
 
@@ -226,19 +240,22 @@ class MeshPiece:
 
 
 def facing(lying: MeshPiece, other: MeshPiece, sign: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the horizontal facets of ``lying`` that look up (``sign`` 1) or down (-1), and the facets of ``other``
-    that look the other way, upright ones left out: (n, 3, 3) each.
+    """Return the horizontal facets of ``lying`` and the facets of ``other`` that look the other way.
+
+    The first look up (``sign`` 1) or down (-1); upright ones are left out: (n, 3, 3) each.
     """
     faces = lying.triangles[lying.level & (sign * lying.upward > 0)]
     return faces, other.triangles[sign * other.upward < -UPRIGHT * other.size]
 
 
 def height_between(first: MeshPiece, second: MeshPiece) -> float:
-    """Return the least height (mm) between a horizontal face of one piece and what faces it in the other, wherever they
-    are.
+    """Return the least height (mm) between a horizontal face of a piece and what faces it in the other.
 
-    Infinite if nothing does. From a horizontal facet the way to the nearest point of another solid is vertical, unless
-    a facet beside it is on that way too; the other end is a corner of a facet that faces it.
+    The pieces may be anywhere.
+
+    They may be anywhere in the motion. It is infinite if nothing does. From a horizontal facet the way to the nearest
+    point of another solid is vertical, unless a facet beside it is on that way too; the other end is a corner of a
+    facet that faces it.
     """
     least = np.inf
     for a, b in ((first, second), (second, first)):
@@ -252,7 +269,10 @@ def height_between(first: MeshPiece, second: MeshPiece) -> float:
 
 
 def read_pieces(parts: Parts, folder: Path) -> list[MeshPiece]:
-    """Load the STL files of parts.json. Raises UserError if one is not the file that parts.json was written with."""
+    """Load the STL files of parts.json.
+
+    Raises UserError if one is not the file that parts.json was written with.
+    """
     pieces = []
     for body, described in parts.bodies.items():
         for name, piece in described.pieces.items():
@@ -283,8 +303,10 @@ class Union:
 
 
 def turned_union(triangles: np.ndarray, centre: np.ndarray, count: int, band: tuple[float, float]) -> Union | None:
-    """Return the facets with a part between two distances (mm) from ``centre``, and their copies turned by 1 / count of
-    a turn; None where that makes far more of them.
+    """Return facets between two distances (mm) from ``centre``, with their copies turned by all pitches.
+
+    A facet counts with a part of it there; copies are turned by 1 / count of a turn. None where that makes far more of
+    them.
     """
     facets = triangles - np.append(centre, 0.0)
     low, high = _distances(facets)
@@ -302,17 +324,18 @@ def turned_union(triangles: np.ndarray, centre: np.ndarray, count: int, band: tu
 
 
 def extent(triangles: np.ndarray, centre: np.ndarray) -> tuple[float, float]:
-    """Return how near to ``centre`` facets come in the plane at least (a lower bound), and how far from it they reach
-    (mm).
+    """Return how near facets come to ``centre`` in the plane, and how far from it they reach (mm).
+
+    The first is a lower bound.
     """
     low, high = _distances(triangles - np.append(centre, 0.0))
     return float(low.min(initial=np.inf)), float(high.max(initial=0.0))
 
 
 def order(pieces: list[MeshPiece], body: str, centre: np.ndarray, radius: float) -> int:
-    """Return how many equal turns about ``centre`` leave the upright facets next to a pitch radius (mm) as they are.
+    """Return how many equal turns about ``centre`` keep the upright facets next to a pitch radius (mm).
 
-    The body's piece with most of these facets counts; 1 where there is none.
+    The wall is the upright facets there. The body's piece with most of these facets counts; 1 where there is none.
     """
     best: list[np.ndarray] = []
     for piece in pieces:
@@ -335,9 +358,7 @@ def _repeats(angles: np.ndarray, count: int) -> bool:
 
 
 def _distances(facets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return distances from the origin in the plane: a lower bound of the nearest point of each facet, and the farthest
-    corner.
-    """
+    """Return distances of facets from the origin in the plane: lower bounds, and farthest corners."""
     away = np.hypot(facets[:, :, 0], facets[:, :, 1])
     sides = np.linalg.norm((np.roll(facets, -1, axis=1) - facets)[:, :, :2], axis=2).max(axis=1)
     return away.min(axis=1) - sides / 2, away.max(axis=1)
@@ -350,9 +371,7 @@ def _turned(facets: np.ndarray, angle: np.ndarray) -> np.ndarray:
 
 
 def _distinct(facets: np.ndarray) -> tuple[np.ndarray, float]:
-    """Return facets with corners next to each other made one, each facet once; and how far a corner was moved at
-    most.
-    """
+    """Return each facet once, with corners next to each other made one, and how far a corner moved."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree

@@ -1,4 +1,4 @@
-"""The search for the least distance of two meshes over a motion: facets, spans of time, sweeps, branch and bound."""
+"""The search for the least distance of two meshes over a motion, by branch and bound."""
 
 from __future__ import annotations
 
@@ -17,12 +17,14 @@ MOST_SPANS = 400
 
 
 class Spans:
-    """A table that grows. Each span knows where the mover is at its ends and middle, and how far it strays between.
+    """A table that grows.
 
-    ``first`` and ``last`` are the intervals it lies in; ``off`` (mm) is what the true motion may be off there.
-    ``ends`` (n, 3, 3): at start, middle and end the centre's x, y (mm) and the angle (rad); ``place`` and ``turned``
-    (n, 3) are the same as x + i y and e^(i angle). ``push`` (mm) and ``spin``
-    (mm a mm from the centre) are how far points stray from the straight lines between their ends. ``travel`` (mm) and
+    Each span knows where the mover is at its ends and middle, and how far it strays between.
+
+    A span knows the poses at its ends and middle. ``first`` and ``last`` are the intervals it lies in; ``off`` (mm) is
+    what the true motion may be off there. ``ends`` (n, 3, 3): at start, middle and end the centre's x, y (mm) and the
+    angle (rad); ``place`` and ``turned`` (n, 3) are the same as x + i y and e^(i angle). ``push`` (mm) and ``spin`` (mm
+    a mm from the centre) are how far points stray from the straight lines between their ends. ``travel`` (mm) and
     ``turn`` (rad) are how far centre and angle are from the middle's at most.
     """
 
@@ -51,9 +53,7 @@ class Spans:
         return (self.start[spans] + self.end[spans]) / 2
 
     def stray(self, spans: np.ndarray, reach: np.ndarray) -> np.ndarray:
-        """Return (n,) how far (mm) points within ``reach`` of the centre are from where they are at the middle, at
-        most.
-        """
+        """Return (n,) how far (mm) points within ``reach`` of the centre are from their middle's places."""
         return self.travel[spans] + reach * self.turn[spans]
 
     def halves(self, spans: np.ndarray) -> np.ndarray:
@@ -106,11 +106,13 @@ FLAT = 1e-6
 
 
 def nearest(p: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the distance (n,) of triangles p and q (n, 3, 3) that do not pierce each other, and the way (n, 3) from p
-    to q.
+    """Return the distance (n,) of triangles p and q (n, 3, 3), and the way (n, 3) from p to q.
 
-    The nearest points of two triangles lie on two edges, or on a corner and a face. For triangles that pierce each
-    other the distance of their edges and corners comes out, and no direction separates them by it (:func:`separation`).
+    The triangles do not pierce each other.
+
+    The triangles do not pierce each other. The nearest points of two triangles lie on two edges, or on a corner and a
+    face. For triangles that pierce each other the distance of their edges and corners comes out, and no direction
+    separates them by it (:func:`separation`).
     """
     edges = _edge_ways(p, q)
     onto_q = _corner_ways(p, q)
@@ -123,8 +125,9 @@ def nearest(p: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def separation(direction: np.ndarray, p: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """Return (n,) how far q (n, 3, 3) is beyond p along unit directions (n, 3); below zero where they overlap along
-    it.
+    """Return (n,) how far q (n, 3, 3) is beyond p along unit directions (n, 3).
+
+    Below zero where they overlap along it.
     """
     along_p = np.einsum("nki,ni->nk", p, direction)
     along_q = np.einsum("nki,ni->nk", q, direction)
@@ -132,8 +135,9 @@ def separation(direction: np.ndarray, p: np.ndarray, q: np.ndarray) -> np.ndarra
 
 
 def normals(t: np.ndarray) -> np.ndarray:
-    """Return (n, 3) unit normals, zero for triangles that are lower than :data:`FLAT`; their edges say where they
-    are.
+    """Return (n, 3) unit normals, zero for triangles lower than :data:`FLAT`.
+
+    The edges of these say where they are.
     """
     normal = np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0])
     size = np.linalg.norm(normal, axis=1)
@@ -161,8 +165,9 @@ def _edge_ways(p: np.ndarray, q: np.ndarray) -> np.ndarray:
 
 
 def _corner_ways(p: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """Return (n, 3, 3): from each corner of p straight to the plane of q where it meets q's inside; infinite
-    elsewhere.
+    """Return (n, 3, 3): from each corner of p straight to the plane of q where it meets q's inside.
+
+    Infinite elsewhere.
     """
     normal = normals(q)
     height = _dot(p - q[:, :1], normal[:, None])
@@ -192,7 +197,10 @@ class Overlap:
 
 
 class Sweep:
-    """Two pieces on their paths. One stands still, the other moves relative to it, whichever bends its paths less."""
+    """Two pieces on their paths.
+
+    One stands still, the other moves relative to it, whichever bends its paths less.
+    """
 
     def __init__(self, first: MeshPiece, second: MeshPiece, path_first: BodyPath, path_second: BodyPath) -> None:
         ends = [path_first.interpolation_error(first.reach), path_second.interpolation_error(second.reach)]
@@ -227,7 +235,10 @@ class Sweep:
         return Overlap(float(times[deepest]), float(depth[deepest]), float(touching[0]), float(touching[-1]))
 
     def depth_at(self, time: float) -> float:
-        """Return how deep (mm) the pieces overlap: the least width of what they share, in height or in the plane."""
+        """Return how deep (mm) the pieces overlap: the least width of what they share, in any direction.
+
+        Directions are those of height and in the plane.
+        """
         common = self.still.manifold ^ self._moved(time)
         if common.is_empty():
             return 0.0
@@ -262,7 +273,7 @@ class Sweep:
 RESOLUTION = 0.005
 """The proven gap is at most this (mm) below one that was measured, apart from the error between samples."""
 FARTHEST_OFF = 1.0
-"""Where the motion may be farther off than this between two samples (mm), parts must be this much farther apart."""
+"""Doubt of the motion between two samples (mm) beyond which parts must be this much farther apart."""
 BATCH = 20_000
 """Candidates looked at in one go, those of the least bounds first."""
 MOST = 30_000_000
@@ -271,7 +282,7 @@ MOST = 30_000_000
 
 @dataclass(frozen=True)
 class Least:
-    """The least gap (mm) that was measured, when, what is proven over all time, and how many poses were measured."""
+    """The least gap (mm) that was measured, when, what is proven, and how many poses were measured."""
 
     gap: float
     time: float
@@ -284,13 +295,19 @@ class Least:
 
 
 class Search:
-    """Branch and bound for one pair; a candidate is a row (node of the still piece, node of the mover, span)."""
+    """Branch and bound for one pair.
+
+    A candidate is a row (node of the still piece, node of the mover, span).
+    """
 
     resolution = RESOLUTION
     most = MOST
 
     def __init__(self, still: Tree, mover: Tree, path: RelativePath, offset: np.ndarray) -> None:
-        """``offset`` (2,): the origin of ``still`` in its body's frame (mm); that of ``mover`` is ``path.centre``."""
+        """``offset`` (2,): the origin of ``still`` in its body's frame (mm).
+
+        That of ``mover`` is ``path.centre``.
+        """
         self.a, self.b = still, mover
         self.offset = np.append(offset, 0.0)
         to_plane = np.array([1.0, 1j])
@@ -359,8 +376,9 @@ class Search:
         return np.concatenate([part for part, _ in parts]), np.concatenate([bound for _, bound in parts])
 
     def _sought(self, span: np.ndarray) -> np.ndarray:
-        """Return (n,) the distance beyond which nothing is of interest: what is proven to be this far apart (mm) in
-        these spans is of no more interest.
+        """Return (n,) the distance beyond which nothing is of interest.
+
+        What is proven to be this far apart (mm) in these spans is of no more interest.
         """
         return self.best - self.resolution + np.minimum(self.spans.off[span], FARTHEST_OFF)
 
@@ -382,10 +400,10 @@ class Search:
         return np.hypot(np.maximum(np.abs(way) - self.a.radius[a] - self.b.radius[b], 0.0), self._height(a, b))
 
     def _boxes_apart(self, rows: np.ndarray) -> np.ndarray:
-        """Return (n,) how far (mm) the two groups' boxes stay apart over the whole span, along a side of either.
+        """Return (n,) how far (mm) two groups' boxes stay apart over a span, along a side of either.
 
-        A side's direction is that of the still box, or that of the mover's at the middle of the span; along it the
-        boxes are apart by the least of what they are at start and end.
+        They are apart along a side of either. A side's direction is that of the still box, or that of the mover's at
+        the middle of the span; along it the boxes are apart by the least of what they are at start and end.
         """
         a, b, span = rows.T
         along_a, across_a = self.a.box_half[a].T
@@ -422,8 +440,9 @@ class Search:
         return np.maximum(np.maximum(self.a.low[a] - self.b.high[b], self.b.low[b] - self.a.high[a]), 0.0)
 
     def _measured(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return pairs of facets: the gap at the middle, the bound over the span, and the halves of spans that need
-        them.
+        """Return halves of spans that pairs of facets still need, with their bounds.
+
+        The gap at the middle and the bound over the span are entered.
         """
         if not len(rows):
             return rows, np.empty(0)
@@ -442,8 +461,9 @@ class Search:
         return self._halved_spans(rows[open_], np.maximum(low[open_], 0.0))
 
     def _bounded(self, a: np.ndarray, b: np.ndarray, span: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return (n,) each, of pairs of single facets: the gap (mm) at the middle of the span; what the best direction
-        separates them by at both its ends.
+        """Return two numbers (n,) for each pair of single facets.
+
+        The gap (mm) at the middle of the span, and what the best direction separates them by at both its ends.
         """
         p, q = self.a.facets[a] + self.offset, self.b.facets[b]
         first, middle, last = (_placed(q, self.spans.ends[span, k]) for k in range(3))

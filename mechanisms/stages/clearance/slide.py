@@ -1,4 +1,4 @@
-"""The gap between two pieces of which one slides along a line of the other, at every place on that line at once.
+"""The gap between two pieces that slide along a line, at every place on that line at once.
 
 Seen along the line, both stand still. So the distance of the two outlines in that view is a lower bound of their gap
 wherever they are, and it is reached where the pieces are abreast of each other. That proves a piston in its liner,
@@ -15,20 +15,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechanisms.stages.clearance.path import BodyPath, relative
+from mechanisms.stages.clearance.pieces import MeshPiece
+from shared.contract import Motion
 
 if TYPE_CHECKING:
-    from manifold3d import Manifold
-
-    from mechanisms.stages.clearance.pieces import MeshPiece
-    from shared.contract import Motion
+    from manifold3d import CrossSection, Manifold
 
 ROUNDING = 1e-3
-"""How far (mm) outlines may be off, since their corners are rounded."""
+"""Error (mm) of outlines, since their corners are rounded."""
 STRAIGHT = 1e-4
 """A slide may leave its line by so much (mm), or turn by so much per mm of reach."""
 
 SLICES = 24
-"""In which what slides is cut, where it is not proven as a whole."""
+"""Number of slices of the slider, where it is not proven as a whole."""
 BESIDE = (1.0, 0.3, 0.1)
 """Parts of the reach: so far ahead and behind of what slides the other piece is looked at."""
 
@@ -45,7 +44,7 @@ class Slide:
 
 
 type Slides = dict[frozenset[str], Slide]
-"""By pair of bodies."""
+"""Lines by pair of bodies."""
 
 
 def slides_of(motion: Motion, where: Mapping[str, BodyPath]) -> Slides:
@@ -73,11 +72,13 @@ def slides_of(motion: Motion, where: Mapping[str, BodyPath]) -> Slides:
 
 
 def slide_gap(first: MeshPiece, second: MeshPiece, slides: Slides, reach: float = np.inf) -> tuple[float, float] | None:
-    """Return the gap (mm) of the two outlines along the line of their bodies, and what of it is proven; None where
-    there is no such line, or where the outlines overlap.
+    """Return the gap (mm) of two outlines along the line of their bodies, and what of it is proven.
 
-    What the other never comes within ``reach`` (mm) of along the line, as the closed end of a cylinder, is left out;
-    None as well where the gap is more than what is left out is away.
+    None where there is no such line, or where the outlines overlap.
+
+    None where there is no such line, or where the outlines overlap. What the other never comes within ``reach`` (mm) of
+    along the line, as the closed end of a cylinder, is left out; None as well where the gap is more than what is left
+    out is away.
     """
     slide = slides.get(frozenset((first.body, second.body)))
     if slide is None:
@@ -94,8 +95,7 @@ def slide_gap(first: MeshPiece, second: MeshPiece, slides: Slides, reach: float 
         outlines = a.project(), b.project()
         if (outlines[0] ^ outlines[1]).area() > 0.0:
             continue
-        loops = [[np.asarray(loop) for loop in outline.to_polygons()] for outline in outlines]
-        gap = min(_distance(p, q) for p in loops[0] for q in loops[1])
+        gap = _distance(*outlines)
         if gap <= away:
             return gap, max(gap - ROUNDING, 0.0)
     return None
@@ -103,7 +103,10 @@ def slide_gap(first: MeshPiece, second: MeshPiece, slides: Slides, reach: float 
 
 @dataclass(frozen=True)
 class Sliced:
-    """Slices of the mover are proven along the line, the rest is not: a valve's stem, but not its disc at the seat."""
+    """Slices of a mover that are proven along the line, and its rest.
+
+    A valve's stem is proven so, but not its disc at the seat.
+    """
 
     gap: float
     """Gap of these slices, mm; infinite where they stay farther than ``away``."""
@@ -135,8 +138,7 @@ def sliced(first: MeshPiece, second: MeshPiece, slides: Slides, reach: float) ->
             touches = bool(left) and left[-1][1] == start
             left[-1:] = [(left[-1][0], end)] if touches else [*left[-1:], (start, end)]
             continue
-        loops = [[np.asarray(loop) for loop in section.to_polygons()] for section in (a, b)]
-        gap = min(gap, *(_distance(p, q) for p in loops[0] for q in loops[1]))
+        gap = min(gap, _distance(a, b))
     if left == [(edges[0], edges[-1])]:
         return None
     rest = []
@@ -154,9 +156,7 @@ def _in_body(piece: MeshPiece, part: Manifold, way: np.ndarray) -> MeshPiece:
 
 
 def _along(angle: float, through: np.ndarray) -> np.ndarray:
-    """Return (3, 4) that gives, of a point of a piece, its place across the line, its height and its place along it
-    (mm).
-    """
+    """Return (3, 4) that gives a point's place across the line, its height and its place along it (mm)."""
     c, s = np.cos(angle), np.sin(angle)
     x, y = through
     return np.array([[-s, c, 0.0, s * x - c * y], [0.0, 0.0, 1.0, 0.0], [c, s, 0.0, -c * x - s * y]])
@@ -169,9 +169,10 @@ def _between(piece: Manifold, low: float, high: float) -> Manifold:
     return piece.trim_by_plane((0.0, 0.0, -1.0), -high) if np.isfinite(high) else piece
 
 
-def _distance(p: np.ndarray, q: np.ndarray) -> float:
-    """Return the distance between two closed polygons (n, 2) that do not cross."""
-    return min(_to_sides(p, q), _to_sides(q, p))
+def _distance(first: CrossSection, second: CrossSection) -> float:
+    """Return the distance between two outlines that do not overlap."""
+    loops = [[np.asarray(loop) for loop in outline.to_polygons()] for outline in (first, second)]
+    return min(min(_to_sides(p, q), _to_sides(q, p)) for p in loops[0] for q in loops[1])
 
 
 def _to_sides(corners: np.ndarray, polygon: np.ndarray) -> float:

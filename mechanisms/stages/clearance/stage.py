@@ -1,4 +1,6 @@
-"""The ``clearance`` stage: proves that no two pieces of different bodies touch over the motion in data.json.
+"""The ``clearance`` stage: proves that no two pieces of different bodies touch over the motion.
+
+The motion is that of data.json.
 
 Every pair of pieces of two bodies is settled by the first of these that suffices:
 
@@ -63,8 +65,9 @@ SOURCES = [
 
 
 def run(name: str, scale: str = "") -> None:
-    """Check mechanism ``name``, or its model at a scale, and write clearance.json, unless motion and parts are those of
-    the last check.
+    """Check mechanism ``name``, or its model at a scale, and write clearance.json.
+
+    Not so if motion and parts are those of the last check.
 
     Raises UserError naming both pieces, the time, the depth or gap, and the remedy, if two pieces come too near.
     """
@@ -113,8 +116,9 @@ def check(
     reach: float = REACH,
     title: str = "",
 ) -> Clearance:
-    """Check every pair of ``pieces`` of different bodies; ``limit`` and ``reach`` in mm. Raises as :func:`run`, with
-    ``title`` as the name, which is that of the mechanism by default.
+    """Check every pair of ``pieces`` of different bodies; ``limit`` and ``reach`` in mm.
+
+    Raises as :func:`run`, with ``title`` as the name, which is that of the mechanism by default.
     """
     from mechanisms.stages.clearance import path as bodies
     from mechanisms.stages.clearance.meshing import bands, least_in_mesh, meshes
@@ -199,14 +203,20 @@ def _clearance_of(
 
 
 def parted_bodies(parts: Parts, motion: Motion) -> list[tuple[str, str]]:
-    """Return pairs of bodies that an event parts by releasing their pin, guide or rod, which their solids could not."""
+    """Return pairs of bodies that an event parts by releasing a joint; their solids could not part.
+
+    The joint is a pin, guide or rod.
+    """
     released = {name: joint for name, joint in motion.joints.items() if joint.released is not None}
     rods = [(name, joint.bodies[1]) for name, joint in released.items() if name in parts.bodies]
     return rods + [joint.bodies for name, joint in released.items() if joint.pair and name not in parts.bodies]
 
 
 def _parted(parts: Parts, motion: Motion) -> str:
-    """Return words on the bodies that are not compared because an event parts them; empty if there are none."""
+    """Return words on the bodies that are not compared because an event parts them.
+
+    Empty if there are none.
+    """
     pairs = ", ".join(" and ".join(pair) for pair in parted_bodies(parts, motion))
     return f"; not compared, as an event parts them: {pairs}" if pairs else ""
 
@@ -224,7 +234,10 @@ def _refuse_lost(name: str, pieces: list[MeshPiece], motion: Motion) -> None:
 def _turn(
     first: MeshPiece, second: MeshPiece, axes: Axes, sweep: Sweep, limit: float, reach: float
 ) -> PairClearance | None:
-    """Return the gap at every angle of a pair round the joint between its bodies; None if that is not enough."""
+    """Return the gap at every angle of a pair round the joint between its bodies.
+
+    None if that is not enough.
+    """
     from mechanisms.stages.clearance.turn import turn_gap
 
     axis = axes.get(frozenset((first.body, second.body)))
@@ -240,8 +253,9 @@ def _turn(
 
 
 def _slide(first: MeshPiece, second: MeshPiece, slides: Slides, limit: float, reach: float) -> PairClearance | None:
-    """Return the gap at every place along the line of a prismatic joint between two bodies; None if that is not
-    enough.
+    """Return the gap at every place along the line of a prismatic joint between two bodies.
+
+    None if that is not enough.
     """
     from mechanisms.stages.clearance.slide import slide_gap
 
@@ -260,10 +274,11 @@ def _sliced(
     limit: float,
     reach: float,
 ) -> PairClearance | None:
-    """Return the gap of a pair of which most is proven along a line and the rest by the motion; None if that is not
-    enough.
+    """Return the gap of a pair of which most is proven along a line and the rest by the motion.
 
-    Only for a pair that stays near: else the motion alone proves it sooner.
+    None if that is not enough.
+
+    None if that is not enough. Only for a pair that stays near: else the motion alone proves it sooner.
     """
     from mechanisms.stages.clearance.outlines import least_gap
     from mechanisms.stages.clearance.search import Sweep
@@ -320,18 +335,18 @@ def _refusal(name: str, refused: list[tuple[Sweep, Least]], limit: float) -> str
     )
     if least.gap >= limit and least.given_up and least.gap - least.error >= limit:
         text = (
-            f"{name}: {pair} come as near as {least.gap:.3g} mm where they were measured, and the search for a nearer "
+            f"{name}: {pair} come as near as {least.gap:.3g} mm where they were measured. The search for a nearer "
             f"pose was given up: their {len(sweep.mover.triangles)} and {len(sweep.still.triangles)} facets run too "
-            f"long beside each other, so that no more than {least.proven:.3g} mm is proven, required {limit / 2:g} mm; "
-            "more steps do not help, but fewer facets do (a larger tolerance of the Solid in parts.py), more room "
-            "between the two, or a shorter motion"
+            f"long beside each other. No more than {least.proven:.3g} mm is proven, required {limit / 2:g} mm. Use "
+            "fewer facets (a larger tolerance of the Solid in parts.py), more room between the two, or a shorter "
+            "motion; more steps do not help"
         )
     elif least.gap >= limit:
         text = (
             f"{name}: {pair} come as near as {least.gap:.3g} mm, and between two samples of data.json they may be "
-            f"{least.error:.3g} mm from where they are taken to be, so no more than {least.proven:.3g} mm is proven, "
-            f"required {limit / 2:g} mm; solve with more steps (without STEPS and motion() they are added where it is "
-            "fast), or with event_rows=True if there are impacts"
+            f"{least.error:.3g} mm off. No more than {least.proven:.3g} mm is proven, required {limit / 2:g} mm. Solve "
+            "with more steps, or with event_rows=True if there are impacts. Without STEPS and motion() steps are added "
+            "where it is fast"
         )
     elif (overlap := sweep.overlap(least.time)).depth > 0:
         text = (

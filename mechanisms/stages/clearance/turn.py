@@ -24,7 +24,7 @@ MANY = 4_000_000
 
 
 def turn_gap(first: np.ndarray, second: np.ndarray, reach: float, limit: float = 0.0) -> tuple[float, float]:
-    """Return the gap (mm) between two meshes (n, 3, 3) that turn about the z axis: what is reached, and what is proven.
+    """Return the gap (mm) of two meshes (n, 3, 3) that turn about the z axis: reached, and proven.
 
     The first number is the distance of two points that some angle brings there; the second is below the gap at
     every angle, and less than the first by :data:`RESOLUTION` as a rule. Gaps beyond ``reach`` are given as
@@ -68,8 +68,9 @@ def _boxes(t: np.ndarray) -> np.ndarray:
 
 
 def _least_radius(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the least r of each triangle (0 if the axis pierces it), and (n, 2) the nearest point of its edges, in (r,
-    z).
+    """Return the least r of each triangle, and (n, 2) the nearest point of its edges, in (r, z).
+
+    The least r is 0 if the axis pierces it.
     """
     p, q = t, np.roll(t, -1, axis=1)
     d = q - p
@@ -86,9 +87,10 @@ def _least_radius(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _within(t: np.ndarray, other: np.ndarray, reach: float) -> np.ndarray:
-    """Return a piece without the triangles that are seen at a glance to be farther from another mesh than ``reach``: by
-    their heights, and by the radii of their corners, which are not farther from any point of a triangle than its
-    longest edge.
+    """Return a piece without the triangles that are clearly farther from a mesh than ``reach``.
+
+    That is seen by their heights, and by the radii of their corners, which are not farther from any point of a triangle
+    than its longest edge.
     """
     r, z = np.hypot(t[:, :, 0], t[:, :, 1]), t[:, :, 2]
     radius, height = np.hypot(other[:, :, 0], other[:, :, 1]), other[:, :, 2]
@@ -116,7 +118,7 @@ def _box_gap(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _bounds(a: np.ndarray, b: np.ndarray, enough: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return for each box of either set its distance to the nearest box of the other, or ``enough`` if that is less."""
+    """Return each box's distance to the nearest box of the other set, ``enough`` at most."""
     (first_a, which_a), (first_b, which_b) = distinct(a), distinct(b)
     (a, place_a, hull_a), (b, place_b, hull_b) = _grouped(a[first_a]), _grouped(b[first_b])
     low_a, low_b = np.full(len(a), max(enough, 0.0)), np.full(len(b), max(enough, 0.0))
@@ -130,8 +132,9 @@ def _bounds(a: np.ndarray, b: np.ndarray, enough: float) -> tuple[np.ndarray, np
 
 
 def _grouped(boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return boxes in groups of :data:`GROUP` that are near each other, the last box as often as is missing; the place
-    of each of ``boxes`` in them; (groups, 4) the box round each group.
+    """Return boxes in groups of :data:`GROUP` that are near each other, and where each box is.
+
+    The last box is there as often as is missing; the third result is (groups, 4) the box round each group.
     """
     count = -(-len(boxes) // GROUP)
     strips = max(1, round(count**0.5))
@@ -162,7 +165,7 @@ def _reached(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def _samples(t: np.ndarray) -> np.ndarray:
-    """Return (n, 2) in (r, z): the corners of the triangles, and the points of their edges nearest to the axis.
+    """Return (n, 2) in (r, z) the corners of triangles, and points of their edges nearest to the axis.
 
     One point stands for all within :data:`ROUNDING` of each other, as corners of a turned part are.
     """

@@ -1,1 +1,1 @@
-"""A mechanism and its motion for other programs: tables, drawings and an assembly of a pose, models of simulators."""
+"""A mechanism and its motion for other programs: tables, drawings, assemblies, simulator models."""

@@ -16,8 +16,9 @@ MARGIN = 0.05
 
 
 def pose_of(solution: Any, time: float) -> tuple[list[Any], dict[str, np.ndarray]]:
-    """Return strokes of the skeleton at the output nearest to a time (s), and the path (k, 2) of each traced point, in
-    m.
+    """Return the skeleton's strokes at the output nearest to a time (s), and paths of traced points.
+
+    The path of each point is (k, 2) in m.
     """
     from mbsd.drawing.strokes import strokes_of
 

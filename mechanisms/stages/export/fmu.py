@@ -89,7 +89,7 @@ def _counts(equations: Any, quantities: Sequence[Quantity]) -> dict[str, int]:
 
 
 def _places(equations: Any) -> dict[str, int]:
-    """Return where the arrays are that the C sources read and write, in bytes from the start of the memory."""
+    """Return where the arrays of the C sources are, in bytes from the start of the memory."""
     packed, dynamics, run, state = equations.ready.packed, equations.ready.dynamics, equations.run, equations.state
     arrays = {
         "Y": state.y, "DY": state.dy, "LAM": state.lam, "CLOCK": state.clock, "COUNT": state.count,
@@ -103,7 +103,10 @@ def _places(equations: Any) -> dict[str, int]:
 
 
 def _scalars(tables: dict[str, dict[str, list[Any]]]) -> dict[str, int]:
-    """Return where the numbers stand in the tables that change from call to call; see NativeEquations.arguments."""
+    """Return where the numbers stand in the tables that change from call to call.
+
+    See NativeEquations.arguments.
+    """
     places = {
         "ADVANCE_END": ("advance", "5"), "ADVANCE_STEPS": ("advance", "6"),
         "ADVANCE_RELATIVE": ("advance", "4.relative"), "DERIVATIVE_TIME": ("derivative", "2"),
@@ -171,8 +174,10 @@ def description(
     name: str, token: str, identifier: str, quantities: Sequence[Quantity], span: tuple[float, float, float],
     tolerance: float, early: bool, exchange: bool,
 ) -> str:  # fmt: skip
-    """Return the text. ``span``: start, end and step (s); ``early``: whether a step may end where contacts begin and
-    end; ``exchange``: whether the unit may be integrated by the importer.
+    """Return the text. ``span``: start, end and step (s).
+
+    ``early``: whether a step may end where contacts begin and end; ``exchange``: whether the unit may be integrated by
+    the importer.
     """
     root = Element("fmiModelDescription", fmiVersion="3.0", modelName=name, instantiationToken=token,
                    description=f"{name}, a planar mechanism", generationTool="mbsd",
@@ -269,7 +274,10 @@ DATED = (1980, 1, 1, 0, 0, 0)
 
 
 def fmu(solution: Any) -> tuple[bytes, list[str]]:
-    """Return the archive, and what it leaves out. Raises UserError without a C compiler or for what needs Python."""
+    """Return the archive, and what it leaves out.
+
+    Raises UserError without a C compiler or for what needs Python.
+    """
     from mbsd import ModelError
     from mbsd.native.equations import NativeEquations
     from mbsd.native.quantities import frames_of, quantities_of, with_inputs
@@ -298,7 +306,10 @@ def fmu(solution: Any) -> tuple[bytes, list[str]]:
 
 
 def _compiler(name: str) -> str:
-    """Return the C compiler: CC, else what the system calls cc, gcc or clang. Raises UserError where there is none."""
+    """Return the C compiler: CC, else what the system calls cc, gcc or clang.
+
+    Raises UserError where there is none.
+    """
     for command in (os.environ.get("CC", ""), "cc", "gcc", "clang"):
         where = command and shutil.which(command)
         if where:
@@ -323,8 +334,9 @@ def _linked(name: str, compiler: str, assembly: str, header: str) -> bytes:
 
 
 def _platform() -> str:
-    """Return the name of the folder of this platform's binaries. Raises UserError for one that the standard does not
-    name.
+    """Return the name of the folder of this platform's binaries.
+
+    Raises UserError for one that the standard does not name.
     """
     machine, system = platform.machine(), platform.system()
     if system not in SYSTEMS:

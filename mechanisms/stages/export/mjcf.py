@@ -1,4 +1,4 @@
-"""MJCF for MuJoCo: bodies as a tree, loops as equality constraints, springs as tendons, drivers as servos.
+"""MJCF for MuJoCo: a tree of bodies, loops as equalities, springs as tendons, drivers as servos.
 
 The plane of the motion is x y, hinges turn about z; keyframe ``start`` has the speeds of the
 first output. Masses are those of the model or its parts; shapes are there to be seen and touch nothing.
@@ -85,7 +85,7 @@ def _bodies(element: Element, tree: Tree, parent: str, size: float, sites: _Site
 
 
 def _joints(below: Element, node: Node) -> list[str]:
-    """Return the joints of a body: one for each freedom against its parent, in the order in which they act."""
+    """Return the joints of a body: one for each freedom against its parent, as they act."""
     name = node.body.name
     hinge = {"type": "hinge", "axis": "0 0 1"}
     if node.joint is None:

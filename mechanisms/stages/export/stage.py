@@ -68,8 +68,9 @@ def file_of(out: Out, form: str) -> Path:
 
 
 def _key(parts: contract.Parts | None, inputs: Inputs, form: str, time: float) -> str:
-    """Return the hash of all that a file follows from; that of the solids takes them whole, others their masses
-    alone.
+    """Return the hash of all that a file follows from.
+
+    That of the solids takes them whole, others take their masses alone.
     """
     solids = parts.provenance.inputs if parts is not None and form == "step" else ""
     return str(key_of(solving.motion_key(parts, inputs), solids, form, time, sources_hash(*SOURCES)))
@@ -119,6 +120,6 @@ FORMATS: dict[str, tuple[str, Callable[[Wanted], Written]]] = {
     "fmu": (".fmu", _fmu),
     "modelica": (".mo", _text(modelica)),
 }
-"""By name: the ending of the file, and what writes it."""
+"""Formats by name: the ending of the file, and its writer."""
 POSED = ("svg", "dxf", "step")
 """Formats of one pose."""

@@ -134,8 +134,9 @@ def tree_of(m: Any, poses: dict[str, Pose]) -> Tree:
 
 
 def _spanning(m: Any) -> list[Any]:
-    """Return joints that connect what they can without a loop: pins that are driven before those that cannot close a
-    loop, other pins last.
+    """Return joints that connect what they can without a loop.
+
+    Pins that are driven come before those that cannot close a loop, other pins last.
     """
     driven = {frozenset(driver.bodies) for driver in m.drivers.values() if driver.kind.angular}
 

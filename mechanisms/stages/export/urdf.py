@@ -1,4 +1,6 @@
-"""URDF: the tree of bodies; what closes loops is a ``loop_joint``, which readers that know no loops pass over.
+"""URDF: the tree of bodies.
+
+What closes loops is a ``loop_joint``, which readers that know no loops pass over.
 
 The plane of the motion is x y; a pin in a slot is a slide and a hinge with a link of no mass between.
 """
@@ -54,7 +56,10 @@ def _link(root: Element, node: Node) -> None:
 
 
 def _joint(root: Element, node: Node) -> None:
-    """The joint that attaches a body. URDF turns a link about its own origin, so links between move the axis there."""
+    """The joint that attaches a body.
+
+    URDF turns a link about its own origin, so links between move the axis there.
+    """
     name, pose = node.body.name, node.pose
     if node.joint is None:
         chain = [

@@ -81,9 +81,7 @@ class _Project(Places):
         return file_hash(path)
 
     def module_state(self, name: str) -> str:
-        """Return the author's modules count by what they mean; those of the program by their bytes, as in the stages'
-        keys.
-        """
+        """Return the hash: author's modules count by what they mean, the program's by their bytes."""
         if os.path.dirname(name) == "mechanisms" or name.startswith(OURS):
             return self.file_state(name)
         return recalled(("module", self.path_of(name)), lambda: super(_Project, self).module_state(name))
@@ -108,7 +106,10 @@ sources_state, package_state = PROJECT.sources_state, PROJECT.package_state
 
 
 def observed(names: Any) -> Inputs | None:
-    """Return the inputs with these names, from :meth:`Inputs.names`, as they are now; None if ``names`` are none."""
+    """Return the inputs with these names, from :meth:`Inputs.names`, as they are now.
+
+    None if ``names`` are none.
+    """
     return PROJECT.observed(names)
 
 

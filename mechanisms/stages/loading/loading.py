@@ -64,10 +64,12 @@ SHOWN = 3
 def worded(
     error: BaseException, lines: Sequence[traceback.FrameSummary], shown: Callable[[Path], str] = Path.as_posix
 ) -> str:
-    """``file:line: what was raised, in function(): the author's line``; ``lines`` are the author's, innermost last.
+    """``file:line: what was raised, in function(): the author's line``.
 
-    For the CAD kernel's exceptions, which say no more than "command not done", the operation with its arguments, the
-    line of ``parts()`` that led there and the remedy are added.
+    ``lines`` are the author's, innermost last.
+
+    ``lines`` are the author's, innermost last. For the CAD kernel's exceptions, which say no more than "command not
+    done", the operation with its arguments, the line of ``parts()`` that led there and the remedy are added.
     """
     last = lines[-1]
     where = f"{shown(Path(last.filename))}:{last.lineno}"
@@ -136,7 +138,10 @@ CONSTANTS = ("DURATION", "STEPS")
 
 
 def checked_variants(name: str, module: ModuleType) -> dict[str, dict[str, Any]]:
-    """``VARIANTS`` of a mechanism.py; empty where there is none. Raises UserError naming the variant and the field."""
+    """``VARIANTS`` of a mechanism.py; empty where there is none.
+
+    Raises UserError naming the variant and the field.
+    """
     file = shown_file(name)
     given = getattr(module, "VARIANTS", None)
     if given is None:
@@ -266,7 +271,7 @@ def recorded[Result](
 
 @contextmanager
 def author_code(name: str) -> Iterator[None]:
-    """Turn what the author's code raises in this block into a UserError that names file, line and the line's text.
+    """Turn what the author's code raises into a UserError that names file, line and the line's text.
 
     A UserError passes as it is. An exception that comes from elsewhere without touching the mechanism's folder
     is a fault of ours and passes too; ``MBSD_TRACEBACK=1`` shows the traceback of either (shared/stage/console.py).
@@ -292,7 +297,7 @@ def author_code(name: str) -> Iterator[None]:
 
 
 def _folder_of(name: str) -> Path:
-    """Return the folder of a mechanism; where it would be on a worker of a cluster, which has its functions alone."""
+    """Return the folder of a mechanism; on a cluster's worker, which lacks it, where it would be."""
     try:
         return mechanism_folder(name) if in_workshop() else MECHANISMS / owner_of(name)
     except UserError:
@@ -318,7 +323,7 @@ class _SourceOnly(SourceFileLoader):
 
 
 def _author_folder(path: str) -> FileFinder:
-    """Find, as a path hook, the modules in folders of the author's, below a mechanism or outside of the project.
+    """Find, as a path hook, modules in the author's folders below a mechanism or outside the project.
 
     Raises ImportError for the program's own folders, those of installed packages and the standard library.
     """
@@ -350,7 +355,7 @@ def _shown(path: Path) -> str:
 
 
 class _Machines(MetaPathFinder):
-    """Finds the machines of a user's own folder as packages, though they may be files, or that folder itself."""
+    """Finds machines of a user's own folder as packages, though they may be files or that folder."""
 
     def find_spec(self, fullname: str, path: Any, target: Any = None) -> ModuleSpec | None:
         top, _, rest = fullname.partition(".")

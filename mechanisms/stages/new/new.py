@@ -24,10 +24,7 @@ from shared.stage.paths import (
 )
 
 TEMPLATES = Path(__file__).parent / "templates"
-KINDS = {
-    "driven": "a slider-crank turned by a driver",
-    "simulated": "a double pendulum moved by weight and a spring",
-}
+KINDS = {"driven": "a slider-crank turned by a driver", "simulated": "a double pendulum moved by weight and a spring"}
 """Folders of templates, and what is in them."""
 TAKEN = {**RESERVED, "all": f"{to_run('all')} runs every mechanism"}
 NEW = to_run("new", "my_linkage")

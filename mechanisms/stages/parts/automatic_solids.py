@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def needs_masses(name: str) -> bool:
-    """Return True if mechanism ``name`` leaves the mass of a body to its parts, or cannot be built to see that."""
+    """Return True if mechanism ``name`` leaves a mass to its parts, or cannot be built to see that."""
     from mbsd import MechanismError
 
     try:
@@ -58,7 +58,9 @@ def follows_gravity(bodies: Any, wish: Kind | None) -> bool:
 
 
 def mount_of(name: str, bodies: Any, wish: Kind | None) -> Mount:
-    """Return the mount of what ``parts()`` returned; solids by hand lie on a desk unless shot.py says otherwise.
+    """Return the mount of what ``parts()`` returned.
+
+    Solids by hand lie on a desk unless shot.py says otherwise.
 
     Raises UserError for one that parts() says and that cannot be.
     """
@@ -110,7 +112,10 @@ def solids_of(name: str) -> dict[str, list[Solid]]:
 
 
 def masses_of_machine(name: str) -> dict[str, Mass]:
-    """By body, those of the parts of the machine itself; none where there are none. The solids need not be there."""
+    """By body, those of the parts of the machine itself; none where there are none.
+
+    The solids need not be there.
+    """
     from shared.contract import Parts
     from shared.stage import jsonfile
 

@@ -4,20 +4,18 @@ from __future__ import annotations
 
 import hashlib
 import re
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from shared.contract import BodyParts, End, Held, Piece, Rolling
 from shared.contract.materials import MATERIALS
-from shared.shapes.bodies import Bodies
+from shared.shapes.bodies import Bodies, Place
 from shared.shapes.solid import Solid
 from shared.shapes.units import metres
 from shared.stage.errors import UserError, did_you_mean
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from mechanisms.stages.parts.memory import KeptPieces
-    from shared.shapes.bodies import Place
 
 
 # Checks what ``parts()`` returned before anything is made of it.
@@ -26,7 +24,7 @@ NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
 def refuse_unfit(name: str, bodies: Any) -> None:
-    """Raise UserError unless ``bodies`` is a dict of lists of Solid by body with fit names and known materials."""
+    """Raise UserError unless ``bodies`` is a dict of lists of Solid with fit names and known materials."""
     if not isinstance(bodies, dict) or not bodies:
         raise UserError(f"{name}: parts() must return a dict of lists of Solid by body, not {type(bodies).__name__}")
     known: dict[str, str] = {}
@@ -103,9 +101,10 @@ def described_body(
     kept: KeptPieces | None = None,
     done: Callable[[], object] = bool,
 ) -> BodyParts:
-    """Describe a body and add its files to ``files``; ``places`` are those that a rod joins. ``along``: z of the solids
-    is that of the model, so masses have it, too. Pieces that are ``kept`` are not made again; ``done`` is called
-    after each piece.
+    """Describe a body and add its files to ``files``; ``places`` are those that a rod joins.
+
+    ``along``: z of the solids is that of the model, so masses have it, too. Pieces that are ``kept`` are not made
+    again; ``done`` is called after each piece.
 
     Raises UserError naming the solid that is refused.
     """

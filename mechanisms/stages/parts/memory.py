@@ -1,6 +1,4 @@
-"""The memory of the stage: Params that parts.py used, their plain values, the files that it read, and pieces kept from
-the last run.
-"""
+"""The memory of the stage: Params that parts.py used, files that it read, and pieces kept."""
 
 from __future__ import annotations
 
@@ -33,9 +31,7 @@ from shared.stage.stages import Stage, key_of
 
 
 def traced(params: Any) -> tuple[Any, set[str]]:
-    """Return a stand-in for a frozen dataclass instance, and the set in which the names that are read from it
-    collect.
-    """
+    """Return a stand-in for a frozen dataclass instance, and the set that collects names read from it."""
     kind = type(params)
     seen: set[str] = set()
 
@@ -61,7 +57,9 @@ def fields_of(params: Any) -> dict[str, Any]:
 
 
 def plain_text(value: Any) -> str | None:
-    """Return the text, or None for a value that has none (a function, an object of a class that is no dataclass).
+    """Return the text, or None for a value that has none.
+
+    Functions have none, and objects of a class that is no dataclass.
 
     ``repr`` would not do: it shortens arrays and shows addresses of objects.
     """
@@ -98,8 +96,9 @@ def _joined(kind: str, values: list[Any]) -> str | None:
 
 
 def only_annotates(files: Iterable[tuple[Path, str]], module: str) -> bool:
-    """Return True if these files, each with its package, use of ``module`` nothing but ``Params``, and that in
-    annotations.
+    """Return True if these files use of ``module`` nothing but ``Params``, and that in annotations.
+
+    Each file comes with its package.
     """
     return all(_file_only_annotates(file, package, module) for file, package in files)
 
@@ -179,8 +178,9 @@ def refuse_again(out: Out, key_of: KeyOf) -> None:
 
 
 def is_worth_it(error: UserError, seconds: float) -> bool:
-    """Return True if a refusal took long to find, and is not of the disk or another process, which may be gone next
-    time.
+    """Return True if a refusal took long to find, and will not be gone next time.
+
+    One of the disk or of another process may be.
     """
     passing = error.code == BUSY or isinstance(error.__cause__, OSError) or OF_THE_DISK in str(error)
     return seconds >= LONG and not passing
@@ -223,7 +223,10 @@ class KeptPieces:
         self._waiting: dict[str, Kept] = {}
 
     def key(self, shape: Any, solid: Any, along: bool) -> str:
-        """Return the key of the piece of ``solid``; ``shape`` is its ``cadquery.Solid``, as yet without a mesh."""
+        """Return the key of the piece of ``solid``.
+
+        ``shape`` is its ``cadquery.Solid``, as yet without a mesh.
+        """
         stream = io.BytesIO()
         shape.exportBin(stream)
         return key_of(self.program, stream.getvalue(), replace(solid, shape=None), along)

@@ -17,8 +17,8 @@ from shared.stage.errors import UserError
 VOLUME_TOLERANCE = 5e-3
 """Largest difference between the volume of the mesh and that of the solid, relative."""
 OF_ITSELF = (
-    "mbsd shaped this part by itself, so this is a fault of the program and not of your model: give the machine pins "
-    "of another diameter (automatic(m, pin=...) in a parts.py, which mbsd new writes), or change a length a little"
+    "mbsd shaped this part, so this is a fault of the program and not of your model. Use another diameter of pins "
+    "(automatic(m, pin=...) in a parts.py, which mbsd new writes), or change a length a little"
 )
 """The remedy where nobody has written the solid."""
 
@@ -45,7 +45,9 @@ def only_solid(shape: Any, where: str, automatic: bool = False) -> Any:
 
 
 def check_mesh(mesh: Any, volume: float, through_holes: int, where: str, automatic: bool = False) -> None:
-    """Check a ``trimesh.Trimesh`` (mm) against its solid's volume (mm^3); ``automatic``: no author has shaped it.
+    """Check a ``trimesh.Trimesh`` (mm) against its solid's volume (mm^3).
+
+    ``automatic``: no author has shaped it.
 
     Raises UserError, naming ``where``, the number and the remedy, if the mesh is not watertight, is inside out, is
     off in volume by more than :data:`VOLUME_TOLERANCE`, or has another number of through holes than declared.
@@ -90,10 +92,11 @@ def _edges(mesh: Any) -> str:
 
 
 def mass_of(solid: Any, density: float, along: bool = False) -> Mass:
-    """Return the mass properties (kg, m, kg m^2, m^3) of a ``cadquery.Shape`` in mm, with ``density`` in kg/m^3.
+    """Return mass properties (kg, m, kg m^2, m^3) of a ``cadquery.Shape`` in mm; ``density`` in kg/m^3.
 
-    The centre of mass is in the body's frame; the inertia is about the axis through it, along z. ``along``: with z of
-    the centre of mass and the products of inertia, which count where z is that of the model.
+    The shape is in mm, ``density`` in kg/m^3. The centre of mass is in the body's frame; the inertia is about the axis
+    through it, along z. ``along``: with z of the centre of mass and the products of inertia, which count where z is
+    that of the model.
     """
     from OCP.BRepGProp import BRepGProp
     from OCP.GProp import GProp_GProps
@@ -133,7 +136,7 @@ def combined(masses: Iterable[Mass]) -> Mass:
 
 
 def _along(pieces: list[Mass], mass: float, com: tuple[float, float]) -> dict[str, Any]:
-    """Return z of the common centre of mass and the products of inertia about it, where all pieces have them."""
+    """Return z of the common centre of mass and products of inertia about it, if all pieces have them."""
     known = [(piece, piece.z, piece.products) for piece in pieces if piece.z is not None and piece.products is not None]
     if len(known) < len(pieces):
         return {}

@@ -1,10 +1,10 @@
-"""The stage ``parts``: mechanisms/<name>/parts.py, or the model alone, becomes STL, STEP and parts.json.
+"""The stage ``parts``: a parts.py, or the model alone, becomes STL, STEP and parts.json.
 
-It runs again only if something changed that the solids follow from: parts.py and what it imports or reads, the part
-library, the densities, CadQuery, a parameter that ``parts()`` reads, or ``mount`` of shot.py, whose other fields count
-for nothing here. mechanism.py itself counts only where parts.py uses more of it than the parameters' values; and where
-there is no parts.py, because then the solids follow from the model and its motion (mechanisms/automatic). A file whose
-bytes would be the same is not touched.
+The solids are STL and STEP files, which parts.json describes. It runs again only if something changed that the solids
+follow from: parts.py and what it imports or reads, the part library, the densities, CadQuery, a parameter that
+``parts()`` reads, or ``mount`` of shot.py, whose other fields count for nothing here. mechanism.py itself counts only
+where parts.py uses more of it than the parameters' values; and where there is no parts.py, because then the solids
+follow from the model and its motion (mechanisms/automatic). A file whose bytes would be the same is not touched.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ PACKAGES = ("cadquery", "cadquery-ocp", "numpy", "python-sat", "trimesh")
 
 
 def run(name: str, scale: str = "", anyway: bool = False) -> None:
-    """Make the parts of mechanism ``name``, or of its model at a scale, if anything they follow from has changed.
+    """Make the parts of mechanism ``name``, or of its model at a scale, if their inputs have changed.
 
     Raises UserError naming the solid, the number and the remedy if a solid is refused; what was there stays. A refusal
     that took long is remembered until something changes, or they are to be made ``anyway``.
@@ -195,7 +195,10 @@ def _described(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Re
 
 
 def _of_cluster(out: Out, given: Any, wish: _Wish, recorder: Recorder) -> _Result | None:
-    """Return the parts that a worker of the cluster made; None where they did not follow from what is here."""
+    """Return the parts that a worker of the cluster made.
+
+    None where they did not follow from what is here.
+    """
     from mechanisms.stages.parts.on_cluster.dealt import made_elsewhere
 
     name, known = out.name, observed(_notes(out).get("inputs")) or Inputs()
@@ -215,8 +218,9 @@ def _of_cluster(out: Out, given: Any, wish: _Wish, recorder: Recorder) -> _Resul
 
 
 def are_current(name: str) -> bool:
-    """Return True if the parts that are there are those of the mechanism as it is. Raises UserError for one without
-    Params.
+    """Return True if the parts that are there are those of the mechanism as it is.
+
+    Raises UserError for one without Params.
     """
     out = Out(name)
     return _is_fresh(out, params(out.name), _wish(out.name))
@@ -247,8 +251,9 @@ def are_outdated(name: str) -> bool:
 
 
 def run_or_none(name: str) -> None:
-    """The same for what needs no parts, motion and plots: where a mechanism without a parts.py has none, that is
-    reported.
+    """Run the stage for what needs no parts, as motion and plots.
+
+    Where a mechanism without a parts.py has none, that is reported.
     """
     out = Out(name)
     try:
@@ -274,7 +279,10 @@ def _notes(out: Out) -> dict[str, Any]:
 
 
 def _key(given: Any, reads: list[str], inputs: Inputs, wish: _Wish) -> str:
-    """Return the hash of all that the parts follow from; ``reads`` are the attributes of Params that parts() reads."""
+    """Return the hash of all that the parts follow from.
+
+    ``reads`` are the attributes of Params that parts() reads.
+    """
     fields = fields_of(given)
     values = {read: plain_text(fields[read]) for read in reads if read in fields}
     densities = {material: MATERIALS[material].density for material in sorted(MATERIALS)}
@@ -322,7 +330,9 @@ def _build(name: str, given: Any, seen: _Seen) -> dict[str, list[Any]]:
 
 
 def _write(out: Out, files: Mapping[str, bytes], document: Parts) -> int:
-    """Write what differs from what is there, remove what no solid makes any more; the number of files written.
+    """Write what differs from what is there, and remove what no solid makes any more.
+
+    Returns the number of files written.
 
     parts.json is written last, so it never names a file that is not there.
     """
@@ -356,7 +366,7 @@ def _summary(name: str, document: Parts, count: int) -> str:
 
 
 def current_parts(out: Out, stage: str) -> Parts | None:
-    """Return the parts that are there, unless what they follow from has changed since, which ``stage`` says."""
+    """Return the parts that are there, unless they are outdated, which ``stage`` says."""
 
     if not out.parts.is_file():
         return None

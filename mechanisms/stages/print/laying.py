@@ -58,7 +58,7 @@ class Laid:
 
 
 def laid(triangles: np.ndarray) -> Laid:
-    """Return a piece, (n, 3, 3) in mm, on the face that it prints best on, turned to need the smallest rectangle."""
+    """Return a piece (n, 3, 3) in mm, on the face to print on, turned to need the smallest rectangle."""
     corners, index = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
     faces = index.reshape(-1, 3)
     down = _standing(corners, faces, _to_bed(best_face(corners, faces)))
@@ -80,11 +80,11 @@ def _within(x: float, y: float, bed: tuple[float, float]) -> bool:
 
 
 def best_face(corners: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Return (3,): the normal of the face to lie on; straight down where there is no flat face to stand on."""
-    across = np.cross(
-        corners[faces[:, 1]] - corners[faces[:, 0]],
-        corners[faces[:, 2]] - corners[faces[:, 0]],
-    )
+    """Return (3,): the normal of the face to lie on.
+
+    Straight down where there is no flat face to stand on.
+    """
+    across = np.cross(corners[faces[:, 1]] - corners[faces[:, 0]], corners[faces[:, 2]] - corners[faces[:, 0]])
     twice = np.linalg.norm(across, axis=1)
     normals = across / np.where(twice > 0, twice, 1.0)[:, None]
     candidates: list[tuple[float, bool, tuple[float, ...]]] = []
@@ -129,7 +129,7 @@ def _to_bed(normal: np.ndarray) -> np.ndarray:
 
 
 def _least_rectangle(vertices: np.ndarray) -> float:
-    """Return the angle (rad) by which a piece is turned so that its rectangle is least, a long side along x."""
+    """Return the angle (rad) that makes the rectangle of a piece least, a long side along x."""
     hull = vertices[ConvexHull(vertices[:, :2]).vertices, :2]
     edges = np.roll(hull, -1, axis=0) - hull
     best, least = 0.0, np.inf
@@ -156,11 +156,11 @@ def _standing(vertices: np.ndarray, faces: np.ndarray, turn: np.ndarray, before:
 SAME = 0.9
 """The least area of an outline, of the largest, at every height of the sheet; an edge is eased by some of it."""
 FULL = 0.7
-"""How much of the cut sheet the piece must be."""
+"""Part of the cut sheet that the piece must be."""
 THICK = 0.6
 """A piece thicker than this part of its width is none of a sheet."""
 ABOVE = 0.25
-"""How much of the piece may stand above the sheet."""
+"""Part of the piece that may stand above the sheet."""
 SAMPLES = 24
 LARGE = 0.02
 """The least area of a face that may be the sheet's upper one, of the outline's."""
@@ -249,7 +249,7 @@ ALIKE = 1e-4
 
 
 def groups(pieces: Sequence[tuple[str, Laid]]) -> list[list[int]]:
-    """Return indices of equal pieces of one material, each given as (material, mesh); in the order of their first."""
+    """Return indices of equal pieces, each given as (material, mesh), in the order of their first."""
     kinds: list[list[int]] = []
     marks: list[tuple[str, float]] = []
     for index, (material, piece) in enumerate(pieces):
@@ -266,7 +266,7 @@ def groups(pieces: Sequence[tuple[str, Laid]]) -> list[list[int]]:
 
 
 def is_equal(piece: Laid, other: Laid) -> bool:
-    """Return True if a turn, also turned over, and a shift bring the corners of one onto those of the other."""
+    """Return True if a turn, also turned over, and a shift bring one's corners onto the other's."""
     if abs(piece.size[2] - other.size[2]) > NEAR or len(piece.vertices) != len(other.vertices):
         return False
     first, second = _centred(piece), _centred(other)

@@ -11,17 +11,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.base.files import csv_text
-from mechanisms.stages.print.laying import Laid, Sheet, fitting, groups, laid, sheet_of
+from mechanisms.stages.print.laying import Bed, Laid, Sheet, fitting, groups, laid, sheet_of
 from mechanisms.stages.print.plates import Placed, dxf, file_of, packed, section, stl, three_mf
+from shared.contract import Piece
 from shared.contract.quantity import written
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
+from shared.stage.paths import Out
 
 if TYPE_CHECKING:
     from mechanisms.stages.clearance.pieces import MeshPiece
-    from mechanisms.stages.print.laying import Bed
-    from shared.contract import Piece
-    from shared.stage.paths import Out
 
 
 # Lists of pieces to make and to buy, for people (Markdown) and for tables (CSV).
@@ -176,9 +175,7 @@ def outlined(out: Out, pieces: Mapping[str, Piece], made: Iterable[Product]) -> 
 def plates_of(
     title: str, made: Sequence[Product], bed: Bed, gap: float, stem: str = "plate"
 ) -> tuple[list[Product], dict[str, bytes]]:
-    """Return the pieces with the plates that the pieces lie on, and the files of these, whose names begin with
-    ``stem``.
-    """
+    """Return the pieces with the plates that they lie on, and the files, named from ``stem``."""
     items = [(k, name) for k, part in enumerate(made) if not part.bed for name in part.names]
     places = packed([made[k].piece.size[:2] for k, _ in items], bed[:2], gap)
     plates: dict[int, list[Placed]] = {}
@@ -199,17 +196,20 @@ def plates_of(
 NOZZLE = 0.4
 """Width of a usual nozzle (mm); thinner walls are not printed."""
 RAYS = 150
-"""So many rays are looked at, from the largest facets and from others."""
+"""Number of rays, from the largest facets and from others."""
 SQUARE = 0.94
 """A ray counts where it meets a face that looks the other way, within 20 degrees: a wall, no edge or wedge."""
 NARROW = 0.35
-"""From facets narrower than this no ray starts (mm): they are sides of engraved lines."""
+"""Width (mm) of facets from which no ray starts if they are narrower: they are sides of engraved lines."""
 SKIN = 1e-4
 """Rays start so far below the surface (mm)."""
 
 
 def thinnest(triangles: np.ndarray) -> float:
-    """Return the thinnest wall (mm) of a closed mesh (n, 3, 3) that its rays find; infinite where they find none."""
+    """Return the thinnest wall (mm) of a closed mesh (n, 3, 3) that its rays find.
+
+    Infinite where they find none.
+    """
     across = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     size = np.linalg.norm(across, axis=1)
     sound = size > 1e-9
@@ -224,7 +224,10 @@ def thinnest(triangles: np.ndarray) -> float:
 
 
 def _inside(triangles: np.ndarray, normals: np.ndarray, start: np.ndarray, way: np.ndarray) -> float:
-    """Return how far it is to the next face along a ray (Moeller and Trumbore 1997); infinite where that leans."""
+    """Return how far it is to the next face along a ray (Moeller and Trumbore 1997).
+
+    Infinite where that leans.
+    """
     first, second = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
     aside = np.cross(way, second)
     volume = np.einsum("ij,ij->i", first, aside)

@@ -19,14 +19,14 @@ from shared.stage.errors import UserError
 # Packs rectangles on as few plates as trimesh's packing finds.
 
 ORDERS = 20
-"""In which rectangles are tried, for each plate."""
+"""Orders in which rectangles are tried, for each plate."""
 DISTINCT = 1e-7
 """Rectangles get sizes that differ by this (mm): how equal ones are sorted would depend on the processor."""
 
 
 @dataclass(frozen=True)
 class Place:
-    """Where a rectangle lies: its corner of least x and y on its plate (mm), and whether it is turned by 90 degrees."""
+    """Where a rectangle lies: its corner of least x and y (mm), and True if it is turned by 90 degrees."""
 
     plate: int
     x: float
@@ -58,9 +58,7 @@ def packed(rectangles: Sequence[tuple[float, float]], bed: tuple[float, float], 
 
 
 def _fullest(sizes: np.ndarray, room: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return bounds (m, 2, 2) of the rectangles that the fullest of several orders puts on a plate, and which these
-    are.
-    """
+    """Return bounds (m, 2, 2) of the rectangles that fit a plate in the best order, and which they are."""
     from trimesh.path.packing import rectangles_single
 
     random, areas = np.random.default_rng(0), np.prod(sizes, axis=1)
@@ -79,8 +77,7 @@ LAYER = "CUT"
 
 
 def section(step: Path, piece: Laid, height: float) -> Any:
-    """Return a ``cadquery.Workplane`` with the solid's section at ``height`` above the bed, moved to z = 0, as it is
-    laid.
+    """Return a ``cadquery.Workplane`` of the section at ``height`` above the bed, moved to z = 0.
 
     Raises UserError if the file cannot be read.
     """
@@ -98,8 +95,9 @@ def section(step: Path, piece: Laid, height: float) -> Any:
 
 
 def dxf(cut: Any, thickness: float) -> bytes:
-    """Return the DXF (R2013) of a section; its layer says how thick the sheet is. No times and no random marks are in
-    it.
+    """Return the DXF (R2013) of a section; its layer says how thick the sheet is.
+
+    No times and no random marks are in it.
     """
     from cadquery.occ_impl.exporters.dxf import DxfDocument
 
@@ -159,7 +157,7 @@ def stl(plate: Sequence[Placed]) -> bytes:
 
 
 def three_mf(title: str, plate: Sequence[Placed]) -> bytes:
-    """Return a 3MF (mm) with an object for each kind of piece, an item for each piece, both with names, and colours."""
+    """Return a 3MF (mm): an object for each kind of piece, an item for each piece, names and colours."""
     import lib3mf
 
     model: Any = lib3mf.get_wrapper().CreateModel()

@@ -6,7 +6,7 @@ import math
 import re
 from typing import TYPE_CHECKING
 
-from shared.contract import read_parts
+from shared.contract import Parts, read_parts
 from shared.contract.quantity import counted
 from shared.stage.console import say, warn
 from shared.stage.errors import UserError
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from mechanisms.stages.clearance.pieces import MeshPiece
     from mechanisms.stages.print.laying import Bed
     from mechanisms.stages.print.making import Bought, Product
-    from shared.contract import Parts
 
 
 # The ``print`` stage: pieces of parts.json on plates to print, outlines to cut, lists of what to make and what to buy.
@@ -39,13 +38,14 @@ SOURCES = [
     *(ROOT / "shared" / "contract" / f"{name}.py" for name in ("parts", "materials")),
 ]
 LISTED = 5
-"""So many thin pieces are named."""
+"""Number of thin pieces that are named."""
 _LENGTH = re.compile(r"[0-9]+(\.[0-9]*)?")
 
 
 def run(name: str, bed: str = "", gap: str = "", scale: str = "") -> None:
-    """Lay out the pieces of mechanism ``name``; ``bed`` is like 220x220 or 220x220x250, ``gap`` like 5 (mm), ``scale``
-    like 1:20 for the pieces of a model.
+    """Lay out the pieces of mechanism ``name``.
+
+    ``bed`` is like 220x220 or 220x220x250, ``gap`` like 5 (mm), ``scale`` like 1:20 for the pieces of a model.
 
     A piece that is larger than the bed is left out with a warning that names it and the bed it needs. Raises UserError
     for a bed or a gap that is none, and where the files of parts.json are not those that it describes.
@@ -111,7 +111,7 @@ def gap_of(text: str) -> float:
 
 
 def _tell_large(name: str, parts: list[Product], bed: Bed, ratio: float) -> None:
-    """Name the pieces that are larger than the bed, the largest first, with the bed and the scale that fit all."""
+    """Name the pieces larger than the bed, the largest first, and the scale that fits all."""
     if not parts:
         return
     times = {part.name: max(own / length for own, length in zip(part.piece.size, bed, strict=True)) for part in parts}

@@ -8,6 +8,7 @@ from itertools import chain
 from typing import TYPE_CHECKING, Literal
 
 from mechanisms.stages.solve import solving
+from shared.contract import BodyParts, Mass, Parts
 from shared.contract.materials import MATERIALS
 from shared.contract.quantity import written
 from shared.stage.console import say
@@ -15,7 +16,6 @@ from shared.stage.errors import UserError, did_you_mean
 
 if TYPE_CHECKING:
     from mbsd import Marker, Mechanism, Solution
-    from shared.contract import BodyParts, Mass, Parts
 
 
 # Masses for a motion: from mechanism.py, from parts.json, or estimated.
@@ -112,7 +112,7 @@ ALIKE = 1e-9
 
 
 def give_masses(m: Mechanism, parts: Parts | None) -> tuple[dict[str, Source], list[str]]:
-    """Give each body of ``m`` that has no mass that of its parts, or an estimate where there are no parts yet.
+    """Give each body of ``m`` without a mass that of its parts, else an estimate.
 
     A body whose mass or inertia mechanism.py gives keeps it; one that the parts leave out gets an estimate. Returns
     where each mass is from, and a sentence on each thing that a user may not expect. Raises UserError if parts and
@@ -147,7 +147,10 @@ def give_masses(m: Mechanism, parts: Parts | None) -> tuple[dict[str, Source], l
 
 
 def leaves_masses(m: Mechanism) -> bool:
-    """Return True if mechanism.py leaves the mass of a body to its parts; ``m`` then has estimates in their place."""
+    """Return True if mechanism.py leaves the mass of a body to its parts.
+
+    ``m`` then has estimates in their place.
+    """
     return "estimate" in give_masses(m, None)[0].values()
 
 
@@ -204,7 +207,9 @@ def _refuse_other_bodies(m: Mechanism, parts: Parts) -> None:
 
 
 def bare_solution(name: str, masses: Mapping[str, Mass] | None = None) -> Solution:
-    """Solve a mechanism with the masses of mechanism.py; where it gives none, with ``masses`` or estimated ones.
+    """Solve a mechanism with the masses of mechanism.py.
+
+    Where it gives none, with ``masses`` or estimated ones.
 
     Poses of a mechanism whose drivers fix every freedom do not depend on masses; those of a simulation do, so parts
     made for it follow from a motion with their own masses (automatic_solids.py). Raises UserError.

@@ -12,13 +12,13 @@ from mechanisms.stages.solve.masses import Source
 from mechanisms.stages.solve.skeleton_file import body_colours
 from shared import contract
 from shared.contract import Shape
+from shared.contract.loads import Look
 
 if TYPE_CHECKING:
     from mbsd import Joint, Solution
     from mbsd.model.force import Force
     from mbsd.results.force_view import ForceView
     from mbsd.results.views import Wrench
-    from shared.contract.loads import Look
 
 
 # How joints, forces and contacts look beyond their signs: markers, wheels, curves, as data.json has them.
@@ -109,8 +109,9 @@ WHOLE = 1e-6
 
 
 def vibration(solution: Solution) -> contract.Vibration | None:
-    """Return the inertia forces; None where nothing has mass, or the motion does not repeat after whole turns of
-    something on ground.
+    """Return the inertia forces.
+
+    None where nothing has mass, or the motion does not repeat after whole turns of something on ground.
     """
     m = solution.mechanism
     if solution.period is None or not any(body.mass > 0 for body in m.bodies.values()):
@@ -152,7 +153,10 @@ def vibration(solution: Solution) -> contract.Vibration | None:
 
 
 def _crank(solution: Solution) -> str | None:
-    """Return the body by whose angle orders count; None if nothing on a pin of ground makes whole turns one way."""
+    """Return the body by whose angle orders count.
+
+    None if nothing on a pin of ground makes whole turns one way.
+    """
     from mbsd import ModelError
 
     try:
@@ -397,7 +401,10 @@ def _hydraulics(view: ForceView) -> contract.HydraulicMotion | None:
 
 
 def _contact(solution: Solution, name: str, row: int) -> contract.ContactMotion:
-    """Return the motion of the contact whose gap is ``row`` of J; the way on which it slides is the next one."""
+    """Return the motion of the contact whose gap is ``row`` of J.
+
+    The way on which it slides is the next one.
+    """
     from mbsd.model.joint import ContactKind
     from mbsd.results.acting import acting
 

@@ -5,22 +5,22 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from shared.contract import Provenance
+from shared.contract import BodyParts, Parts, Provenance
 from shared.contract.materials import MATERIALS
 from shared.contract.skeleton import Carried, CarriedName, Carrier, End, Moving, Name, Pose, Skeleton, Stroke
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
     from mbsd.drawing.moving_skeleton import Moving as Drawn
-    from shared.contract import BodyParts, Parts
 
 
 # The one table of body colours: by the material of each body's main piece, or by its role where there are no parts.
 
 
 def body_colours(m: Mechanism, parts: Parts | None) -> dict[str, str]:
-    """Return the ink (``#rrggbb``, on light paper) of each moving body; bodies of one material have shades that
-    differ.
+    """Return the ink (``#rrggbb``, on light paper) of each moving body.
+
+    Bodies of one material have shades that differ.
     """
     from mbsd.drawing.look import INKS, apart, colours_by_role
 

@@ -63,7 +63,10 @@ def model_of(name: str) -> tuple[Mechanism, Any, Any]:
 
 
 def motion_of(name: str, module: Any, m: Mechanism, p: Any) -> Solution:
-    """Return the motion of ``m`` as mechanism.py asks for it. Raises UserError; warnings of the solver become lines."""
+    """Return the motion of ``m`` as mechanism.py asks for it. Raises UserError.
+
+    Warnings of the solver become lines.
+    """
     from mbsd import MechanismError
     from mbsd.results.solution import Solution
 
@@ -102,8 +105,8 @@ def _natural(name: str, module: Any, m: Mechanism) -> Solution:
     if duration is None:
         freedoms = f"{counted(free, 'degree')} of freedom {'is' if free == 1 else 'are'}"
         raise UserError(
-            f"{name}: {freedoms} not driven, so forces move it and the motion is simulated, but how long is not said; "
-            f"write DURATION = 2.0 (seconds) beside build() in {_file(name)}, or add a driver, "
+            f"{name}: {freedoms} not driven, so the motion is simulated, but its duration is missing. "
+            f"Write DURATION = 2.0 (seconds) beside build() in {_file(name)}, or add a driver, "
             "such as m.drive_angle(...)"
         )
     if steps is not None:
@@ -113,7 +116,7 @@ def _natural(name: str, module: Any, m: Mechanism) -> Solution:
 
 
 def _steps_of(m: Mechanism, duration: float | None) -> int:
-    """Return steps of a sweep: so many for each turn of its drivers, of the whole period where no duration is given."""
+    """Return steps of a sweep: so many for each turn of its drivers, by default of the whole period."""
     from mbsd.kinematics.period import common_period
 
     whole, common = duration or m.period(), common_period(m.drivers.values())
@@ -123,8 +126,9 @@ def _steps_of(m: Mechanism, duration: float | None) -> int:
 
 
 def _positive(name: str, module: Any, constant: str, form: str) -> float | None:
-    """Return a constant beside build(), or None where there is none. Raises UserError unless it is a positive
-    number.
+    """Return a constant beside build(), or None where there is none.
+
+    Raises UserError unless it is a positive number.
     """
     value = loading.constant(name, module, constant)
     if value is None:
@@ -144,7 +148,10 @@ def _refuse_other(name: str, m: Mechanism, solved: Any) -> None:
 
 
 def _tell_blurred_impacts(name: str, solution: Solution) -> bool:
-    """Say that impacts lie between rows, so that plots and films would show them as something smooth; whether so."""
+    """Say that impacts lie between rows, and return True if they do.
+
+    Plots and films would show them as something smooth.
+    """
     shared = {float(time) for time in solution.t[1:][solution.t[1:] == solution.t[:-1]]}
     lost = [event for event in solution.events if event.what == "impact" and event.time not in shared]
     if lost:
@@ -158,7 +165,7 @@ def _tell_blurred_impacts(name: str, solution: Solution) -> bool:
 
 
 def _tell_long_steps(name: str, module: Any, solution: Solution) -> None:
-    """Say that rows of a simulation are too far apart for how fast something moves, so that proofs may fail there."""
+    """Say that rows of a simulation are too far apart for fast motion, so that proofs may fail there."""
 
     long = [] if solution.work is None else doubted_steps(solution)
     if len(long):
@@ -230,7 +237,7 @@ MOST_ROWS = 20_000
 
 
 def simulated_closely(m: Mechanism, duration: float, steps: int) -> Solution:
-    """``m.simulate`` with both rows of events, in ``steps`` equal steps and more where the motion needs them."""
+    """Run ``m.simulate`` with both rows of events, in ``steps`` equal steps and more where needed."""
     times = np.linspace(0.0, duration, steps + 1)
     solution = m.simulate(times=times, event_rows=True)
     for _ in range(ROUNDS):
@@ -258,7 +265,7 @@ def swept_closely(m: Mechanism, times: np.ndarray) -> Solution:
 
 
 def closer_times(m: Mechanism, times: np.ndarray) -> np.ndarray:
-    """Return times (s) with more of them where the motion of a sweep needs it: where a link flies past a dead point."""
+    """Return times (s) with more where the sweep needs them: where a link flies past a dead point."""
     for _ in range(2 * ROUNDS):
         middles = (times[:-1] + times[1:]) / 2
         finer = m.sweep(times=np.sort(np.concatenate([times, middles])), event_rows=True)
@@ -274,10 +281,11 @@ def closer_times(m: Mechanism, times: np.ndarray) -> np.ndarray:
 
 
 def _inner(times: np.ndarray, count: int, coarse: np.ndarray, far: np.ndarray) -> np.ndarray:
-    """Return times (s) that divide the steps after rows ``coarse`` of ``times``; of too many, those that are ``far``
-    most.
+    """Return times (s) that divide the steps after rows ``coarse``.
 
-    ``count``: how many times there are already.
+    Of too many, those that are ``far`` most are divided.
+
+    If they are too many, those with the largest ``far`` remain. ``count``: how many times there are already.
     """
     room = max(MOST_ROWS - count, 0) // (PARTS - 1)
     coarse = coarse[np.argsort(-far, kind="stable")[:room]]
@@ -286,14 +294,14 @@ def _inner(times: np.ndarray, count: int, coarse: np.ndarray, far: np.ndarray) -
 
 
 def coarse_steps(solution: Solution) -> tuple[np.ndarray, np.ndarray]:
-    """Return rows after which the quintic leaves the motion or cannot be trusted, and how far, 1 being what may be."""
+    """Return rows after which the quintic leaves the motion, and how far, 1 being what may be."""
     steps = _steps(solution)
     far = _far(solution, steps, steps + 1, solution.at((solution.t[steps] + solution.t[steps + 1]) / 2).q)
     return steps[far > 1.0], far[far > 1.0]
 
 
 def doubted_steps(solution: Solution) -> np.ndarray:
-    """Return rows after which the proof of clearance doubts the motion, as far as the rows themselves show."""
+    """Return rows after which the proof of clearance doubts the motion, as far as rows show it."""
     steps = _steps(solution)
     return steps[_doubt(solution, steps, steps + 1) > 1.0]
 
@@ -305,10 +313,11 @@ def _steps(solution: Solution) -> np.ndarray:
 
 
 def _far(solution: Solution, first: np.ndarray, last: np.ndarray, middle: np.ndarray) -> np.ndarray:
-    """Return (n,) how far the quintic between two rows is from the motion, ``middle`` (n, bodies, 3) half way, or
-    doubted.
+    """Return (n,) how far the quintic between two rows is from the motion, or doubted.
 
-    In parts of what may be.
+    ``middle`` (n, bodies, 3) is half way.
+
+    ``middle`` (n, bodies, 3) is the motion half way; also counted is how far it is in doubt.
     """
     h, size = (solution.t[last] - solution.t[first])[:, None, None], solution.packed.size
     q, v, a = solution.q, solution.v, solution.a
@@ -318,7 +327,7 @@ def _far(solution: Solution, first: np.ndarray, last: np.ndarray, middle: np.nda
 
 
 def _doubt(solution: Solution, first: np.ndarray, last: np.ndarray) -> np.ndarray:
-    """Return (n,) how far the quintic between two rows is from the cubic, in parts of what the proof may doubt."""
+    """Return (n,) how far the quintic is from the cubic between rows, in parts of what may be doubted."""
     h, size = (solution.t[last] - solution.t[first])[:, None, None], solution.packed.size
     rise = 0.3 * (solution.q[last] - solution.q[first])
     v0, v1 = h * solution.v[first], h * solution.v[last]

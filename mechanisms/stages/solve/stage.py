@@ -1,4 +1,4 @@
-"""The stage ``solve``: mechanism.py and the masses of parts.json to data.json, and the skeleton to skeleton.json."""
+"""The stage ``solve``: mechanism.py and masses of parts.json become data.json and skeleton.json."""
 
 from __future__ import annotations
 
@@ -79,8 +79,9 @@ def _is_fresh(out: Out, parts: contract.Parts | None) -> bool:
 
 
 def motion_key(parts: contract.Parts | None, inputs: Inputs) -> str:
-    """Return the hash of all that the motion follows from; ``inputs``: what mechanism.py is made of, and what it
-    reads.
+    """Return the hash of all that the motion follows from.
+
+    ``inputs``: what mechanism.py is made of, and what it reads.
     """
     masses = parts and {body: (solids.mass, solids.z, main_material(solids)) for body, solids in parts.bodies.items()}
     sources = sources_hash(*SOURCES), sources_state("mbsd"), sources_state("mbsd/drawing")
@@ -88,9 +89,11 @@ def motion_key(parts: contract.Parts | None, inputs: Inputs) -> str:
 
 
 def solve(name: str, parts: contract.Parts | None) -> tuple[Solution, dict[str, Source]]:
-    """Build the mechanism, give it masses, say where those are from, and solve its motion. Raises UserError.
+    """Build the mechanism, give it masses, say where those are from, and solve its motion.
 
-    Also returns where the mass of each body is from.
+    Raises UserError.
+
+    Raises UserError. Also returns where the mass of each body is from.
     """
     from mechanisms.stages.solve.masses import give_masses
 

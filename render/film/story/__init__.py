@@ -1,1 +1,1 @@
-"""A film as a story: which shots it has, and what each of their frames shows. Without Blender, and without letters."""
+"""A film as a story: its shots, and the content of each frame, without Blender and without letters."""

@@ -31,7 +31,7 @@ class Picture(msgspec.Struct, kw_only=True, frozen=True):
 
 
 class Leader(msgspec.Struct, frozen=True):
-    """A line from a place in the picture (parts of its width and height) to words at its left or right edge."""
+    """A line from a place in the picture (parts of its size) to words at its left or right edge."""
 
     x: float
     y: float
@@ -44,7 +44,7 @@ class Leader(msgspec.Struct, frozen=True):
 
 
 class Note(msgspec.Struct, frozen=True):
-    """Words at a place in the picture, in parts of its width and height, pushed the way (dx, dy) they point."""
+    """Words at a place in the picture, in parts of its size, pushed the way (dx, dy) they point."""
 
     x: float
     y: float
@@ -58,11 +58,11 @@ class Over(msgspec.Struct, kw_only=True, frozen=True):
     """The overlay of a picture: words, strip and leaders; Blender draws none of it."""
 
     title: float = 0.0
-    """How far the title is there, 0 .. 1, over a picture that is dark and out of focus."""
+    """Visibility of the title, 0 .. 1, over a picture that is dark and out of focus."""
     focus: float = 0.0
-    """How far that picture has become sharp."""
+    """Sharpness of that picture."""
     ending: float = 0.0
-    """How far the words of the end are there."""
+    """Visibility of the words of the end."""
     caption: str = ""
     caption_shown: float = 0.0
     rate: str = ""
@@ -74,7 +74,7 @@ class Over(msgspec.Struct, kw_only=True, frozen=True):
     notes: tuple[Note, ...] = ()
     notes_shown: float = 0.0
     dark: float = 0.0
-    """How far the picture is faded to the dark."""
+    """Fading of the picture to the dark."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ class Shot:
 
 
 def shown_in(s: float, start: float, end: float, fade: float = 0.35) -> float:
-    """Return how far something is there at second ``s`` that comes at ``start`` and goes at ``end``, 0 .. 1."""
+    """Return how visible something is at second ``s`` that comes at ``start`` and goes at ``end``, 0 .. 1."""
     part = min((s - start) / fade, (end - s) / fade, 1.0)
     u = max(part, 0.0)
     return u * u * (3 - 2 * u)
@@ -132,7 +132,7 @@ def below(aspect: float, strip: bool) -> float:
 
 
 def side_width(aspect: float) -> float:
-    """Return the part of the picture's width that a camera leaves empty at the right for a strip that stands there."""
+    """Return the part of the picture's width that a camera leaves empty at the right for a strip."""
     return SIDE / sides(aspect)[0]
 
 
@@ -156,10 +156,10 @@ class Reason:
     name: str
     """Name of the element: a contact, a follower, an event, a driver or force, a joint, a point."""
     amount: str = ""
-    """How much, with its unit."""
+    """Amount, with its unit."""
     joint: str = ""
     """The joint that carries most at that time, if joints carry anything ..."""
     force: str = ""
     """... and how much."""
     words: tuple[str, ...] = field(default=())
-    """By which an author may ask for it."""
+    """Names by which an author may ask for it."""

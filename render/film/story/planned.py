@@ -1,4 +1,4 @@
-"""Chooses the shots of a story and their seconds, so that it costs little more than the loop film of the machine."""
+"""Choice of a story's shots and seconds, so that it costs little more than the loop film."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from shared.stage.errors import UserError, did_you_mean
 BUDGET = 2.2
 """Pictures of a story beside those of the loop film; starting Blender twice takes the rest up to 2.5."""
 WAYS = ((True, 1.0), (False, 1.0), (False, 0.75), (False, 0.55), (False, 0.4), (False, 0.25), (False, 0.12))
-"""If the camera turns while the machine is shown, and the part of the seconds of moves: the first that fits."""
+"""Turning of the camera while the machine is shown, and the part of the seconds of moves; the first pair that fits."""
 ARROWED = 2.6
 """Cost of a picture with arrows, which are rendered apart, in pictures without."""
 TWOS = ("draft", "preview")
@@ -35,9 +35,11 @@ def planned(
     film: Film, forces: Film | None, reasons: Sequence[Reason], preset: Preset, seconds: float = 0.0,
     cut: Film | None = None,
 ) -> Story:  # fmt: skip
-    """Return the story of a film: ``forces`` is the same with arrows, None where nothing has any, ``cut`` the same cut
-    open, None of a shot without a section; the first of ``reasons`` is what time stops for, unless the shot asks for
-    another. With ``seconds`` it is a loop of that length.
+    """Return the story of a film.
+
+    ``forces`` is the same with arrows, None where nothing has any, ``cut`` the same cut open, None of a shot without a
+    section; time stops for the first of ``reasons``, unless the shot asks for another. With ``seconds`` it is a loop of
+    that length.
 
     Raises UserError with place and remedy for wishes of the shot that cannot be.
     """
@@ -103,11 +105,14 @@ SHOTS: dict[str, Callable[[Scenery], Shot | None]] = {
     "reason": reason,
     "last": last,
 }
-"""By the names that a shot.py gives; the title needs what follows it."""
+"""Shots by the names that a shot.py gives; the title needs what follows it."""
 
 
 def _wished_first(mechanism: str, event: str | None, reasons: Sequence[Reason]) -> list[Reason]:
-    """Return the reasons, that of the shot's ``event`` first. Raises UserError where nothing like it ever happens."""
+    """Return the reasons, that of the shot's ``event`` first.
+
+    Raises UserError if nothing like it ever happens.
+    """
     if event is None:
         return list(reasons)
     for reason_ in reasons:

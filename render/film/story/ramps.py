@@ -57,7 +57,7 @@ class Ramp:
 
 
 def into(event: float, earliest: float, rate: float, seconds: float, slowing: float) -> Ramp:
-    """Return a ramp that goes at ``rate`` for some ``seconds``, slows down and stops at the time of an ``event``.
+    """Return a ramp at ``rate`` for some ``seconds`` that slows down and stops at an ``event``.
 
     It begins at ``earliest`` (s) at the earliest; what is left until the event then goes slower.
     """
@@ -99,8 +99,9 @@ ROWS = 400
 
 
 def warped(time: Sequence[float], happens: Array, start: float, end: float, seconds: float) -> Warp:
-    """Return a warp over ``start`` .. ``end`` (s) of so many ``seconds``; ``happens`` (T,) >= 0 is how much at
-    ``time``.
+    """Return a warp over ``start`` .. ``end`` (s) of so many ``seconds``.
+
+    ``happens`` (T,) >= 0 is how much happens at ``time``.
     """
     times = np.linspace(start, end, ROWS)
     lively = np.interp(times, np.asarray(time), happens)
@@ -120,7 +121,7 @@ EACH = 0.45
 
 
 def lifted(lifts: Sequence[Lift], part: float) -> list[float]:
-    """Return heights (m) of all pieces over where they belong, when the machine is apart by a ``part`` 0 .. 1."""
+    """Return heights (m) of all pieces over their place, in a machine that is apart by a ``part`` 0 .. 1."""
     layers = lifts[-1].order or 1
     delays = [(1 - lift.order / layers) * (1 - EACH) for lift in lifts]
     return [lift.distance * eased((part - delay) / EACH) for lift, delay in zip(lifts, delays, strict=True)]

@@ -87,8 +87,9 @@ def at_distance(stand: Stand, distance: float) -> Stand:
 
 
 def posed(stand: Stand, up: Vector, sharp: Array, blur: float, by: Array | None = None) -> CameraPose:
-    """Return a camera at a stand, moved ``by`` (3,) m of the world, that blurs the nearest and farthest of points
-    ``sharp`` (n, 3) of the world by so many pixels of a picture 1280 wide.
+    """Return a camera at a stand, moved ``by`` (3,) m of the world, with that blur.
+
+    It blurs the nearest and farthest of points ``sharp`` (n, 3) of the world by so many pixels of a picture 1280 wide.
     """
     position = stand.position
     depths = (in_studio(sharp, up) - position) @ axes(stand.azimuth, stand.elevation)[2]
@@ -98,8 +99,9 @@ def posed(stand: Stand, up: Vector, sharp: Array, blur: float, by: Array | None 
 
 
 def focused(stand: Stand, up: Vector, blur: float) -> CameraPose:
-    """Return a camera with a shallow depth: what it looks at is sharp, a fifth of the distance behind it ``blur``
-    pixels.
+    """Return a camera with a shallow depth.
+
+    Its target is sharp, and a fifth of the distance behind it things blur by ``blur`` pixels.
     """
     focus, away = stand.distance, 1.2 * stand.distance
     disc, length = blur * SENSOR / REFERENCE_WIDTH / 1000, stand.lens / 1000
@@ -138,7 +140,10 @@ MARGIN = 0.05
 
 @dataclass
 class Scenery:
-    """Everything that a shot may ask for. ``forces`` is the same film with arrows; None where nothing has any."""
+    """Everything that a shot may ask for.
+
+    ``forces`` is the same film with arrows; None where nothing has any.
+    """
 
     film: Film
     forces: Film | None
@@ -190,7 +195,7 @@ class Scenery:
         return exploded(self.film.parts, 1.0)
 
     def piece(self, lift: Lift, apart: float = 0.0) -> Array:
-        """Return points (n, 3) around a piece at the start of the motion, lifted by a part of its distance (m)."""
+        """Return points (n, 3) around a piece at the start, lifted by a part of its distance (m)."""
         names = list(self.film.parts.bodies[lift.body].pieces)
         outline = self.film.space.outlines(lift.body)[names.index(lift.piece)]
         x, y, theta = self.film.poses.body(lift.body, self.film.clock.moment(0))
@@ -199,10 +204,10 @@ class Scenery:
         return turned + np.array([x, y, 0.0]) + apart * lift.distance * np.array(lift.axis)
 
     def loop_frame(self, time: float) -> float:
-        """Return the frame of the loop, which may lie between two, that shows a time of the motion (s), also beyond a
-        period.
+        """Return the frame of the loop that shows a time of the motion (s), also beyond a period.
 
-        Times that are nearer than a millionth of a frame are one, so that a second turn finds its pictures made.
+        It may lie between two frames. Times that are nearer than a millionth of a frame are one, so that a second turn
+        finds its pictures made.
         """
         clock = self.film.clock
         frame = round((time - clock.start) / (clock.end - clock.start) * clock.moving, 6)
@@ -216,8 +221,9 @@ class Scenery:
         return float(self.film.space.all[:, 2].max())
 
     def stand(self, azimuth: float = 0.0, elevation: float = 0.0, strip: bool = True, arrows: bool = False) -> Stand:
-        """Return the stand that holds the machine, turned by so many degrees from that of the shot, with room for
-        words.
+        """Return the stand that holds the machine, with room for words.
+
+        It is turned by so many degrees from that of the shot.
         """
         asked = azimuth, elevation, strip, arrows
         if asked not in self.kept:

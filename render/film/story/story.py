@@ -40,9 +40,7 @@ class Curve:
 
 
 def curve_of(motion: Motion, name: str) -> Curve | None:
-    """Return the curve of a joint (its reaction), a driver or force (its effort) or a point (its speed); None of no
-    such.
-    """
+    """Return the curve of a joint (reaction), driver or force (effort) or point (speed); None of no such."""
     time = np.asarray(motion.time)
     if name in motion.joints:
         joint = motion.joints[name]
@@ -69,8 +67,9 @@ def curve_of(motion: Motion, name: str) -> Curve | None:
 
 
 def curves_of(motion: Motion, wished: Sequence[str] | None, reasons: Sequence[Reason]) -> list[Curve]:
-    """Return the curves of ``wished`` names; without a wish those of the first reason, of what drives, and of the
-    fastest body.
+    """Return the curves of ``wished`` names, or of the first reason, the drive and the fastest body.
+
+    The latter are shown without a wish.
     """
     if wished is not None:
         return [curve for name in wished if (curve := curve_of(motion, name)) is not None]
@@ -146,7 +145,7 @@ class Story:
         return placed.shot.picture(self._second(placed, frame, self.step))
 
     def around(self, frame: int) -> tuple[Picture, Picture, Picture]:
-        """Return the picture of a frame between those that a shutter sees before and after, none of another shot."""
+        """Return the pictures that a shutter sees before, at and after a frame, within its shot."""
         placed = self.placed_at(frame)
         here = placed.first + (frame - placed.first) // self.step * self.step
         near = (max(here - 1, placed.first), here, min(here + 1, placed.end - 1))
@@ -170,8 +169,9 @@ class Story:
         return placed.shot.model(s - placed.first / self.fps)
 
     def time_map(self, start: float, end: float, anew: bool = True) -> TimeMap:
-        """Return the same for sound, a piece a frame long, of a motion from ``start`` to ``end`` (s) that begins anew,
-        or stands at its end if it does not.
+        """Return the time map for sound, a piece a frame long.
+
+        It is of a motion from ``start`` to ``end`` (s) that begins anew, or stands at its end if it does not.
         """
         seconds, moments = [0.0], [self.model_time(0.0)]
         for placed in self.placed:
@@ -206,8 +206,9 @@ class Story:
 
 
 def _held(seconds: list[float], moments: list[float], start: float, end: float) -> tuple[list[float], list[float]]:
-    """Return moments held within ``start`` .. ``end``, as in the picture; where a shot begins it anew, the film
-    cuts.
+    """Return moments held within ``start`` .. ``end``, as in the picture.
+
+    Where a shot begins the motion anew, the film cuts.
     """
     out_seconds, out_moments = [], []
     for k, (second, moment) in enumerate(zip(seconds, moments, strict=True)):
@@ -221,8 +222,9 @@ def _held(seconds: list[float], moments: list[float], start: float, end: float) 
 
 
 def _folded(seconds: list[float], moments: list[float], start: float, end: float) -> tuple[list[float], list[float]]:
-    """Return moments brought back into ``start`` .. ``end``; where a piece passes the end, the film cuts to the
-    start.
+    """Return moments brought back into ``start`` .. ``end``.
+
+    Where a piece passes the end, the film cuts to the start.
     """
     whole = end - start
     out_seconds, out_moments = [], []

@@ -79,7 +79,7 @@ TABLE: dict[str, dict[str, str]] = {
         "difference": "Hier unterscheidet sich {curve} am meisten: {first} ({a}), {second} ({b}).",
     },
 }
-"""By language, then by what is said; every language says the same things with the same names in braces."""
+"""Words by language, then by subject; every language says the same things with the same names in braces."""
 SAME, ABOUT = 0.05, 0.2
 """Rates that differ from real time by less are real time, and about real time."""
 
@@ -130,8 +130,9 @@ def srt(captions: Sequence[Caption]) -> str:
 
 
 def captions_of(text: str) -> list[Caption]:
-    """Return the captions of a SubRip file, also of one that another program has saved. Raises ValueError naming the
-    words that stand where times should.
+    """Return the captions of a SubRip file, also of one that another program has saved.
+
+    Raises ValueError naming the words that stand where times should.
     """
     captions = []
     for block in re.split(r"\n\s*\n", text.lstrip("\ufeff").replace("\r\n", "\n").strip()):

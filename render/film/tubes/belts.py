@@ -33,7 +33,7 @@ POINTS, MARK_POINTS = 181, 5
 FEWEST, MOST = 6, 14
 """Marks on a belt."""
 OUTER, INNER = 1.0, 0.72
-"""How far the plates of every other link of a chain lie from its middle, in PLATES."""
+"""Distance of the plates of every other link of a chain from its middle, in PLATES."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Belt:
     start: float
     """The first body's angle against that line at the start (rad)."""
     pace: float
-    """By how much the belt is shown faster than it is."""
+    """Factor by which the belt is shown faster than it is."""
 
     alike: bool
     """True if all links of a chain have the same plates; else every other link's lie inside its neighbours'."""
@@ -146,8 +146,9 @@ class Placing:
 
 
 def belts(motion: Motion, held: Mapping[str, Held]) -> Iterator[Belt]:
-    """Yield all belts whose pulleys say where it lies (``held``, by the names of joints), if there is room for a
-    path.
+    """Yield all belts whose pulleys have a place, if there is room for a path.
+
+    ``held``: the places, by the names of joints.
     """
     time = np.asarray(motion.time)
     for name, joint in motion.joints.items():

@@ -1,4 +1,4 @@
-"""Torsion springs: a flat spiral over the pin of two bodies, its outer end on a stud of one, its inner on the other.
+"""Torsion springs: a flat spiral over the pin of two bodies, each end on a stud of one body.
 
     r(s)    = R + (H - R) s                     from the stud (s = 0) in to the hub (s = 1)
     a(s, t) = a_stud(t) + 2 pi n(t) s           n(t) turns: as many more as the inner body has turned against the outer
@@ -36,12 +36,12 @@ SAME_PLACE = 1e-6
 
 @dataclass(frozen=True)
 class Site:
-    """Where a spiral may be: which body has its stud, in which direction (rad, in that body), and heights (m)."""
+    """A place for a spiral: the body with its stud, the direction (rad, in that body), heights (m)."""
 
     outer: str
     direction: float
     base: float
-    """On which the stud stands."""
+    """Height on which the stud stands (m)."""
     hub: float
     """Top of the pin."""
     over: float
@@ -58,7 +58,7 @@ class Spiral:
     at: tuple[float, float, float]
     """x, y in the outer body's frame, and the stud's direction there."""
     turns: float
-    """Where the inner body's angle against the outer is 0."""
+    """Turns where the inner body's angle against the outer is 0."""
     points: int
     size: float
     wire: float
@@ -102,8 +102,9 @@ class Spiral:
         ]
 
     def curve(self, turned: float) -> Array:
-        """Return points (n, 3) of the wire about its pin, its stud on the x axis; ``turned``: inner against outer
-        (rad).
+        """Return points (n, 3) of the wire about its pin, its stud on the x axis.
+
+        ``turned``: inner against outer (rad).
         """
         part = np.linspace(0, 1, self.points)
         radius = self.rim + (HUB * self.size - self.rim) * part
@@ -138,7 +139,7 @@ def spirals(
 
 
 def _pin(motion: Motion, force: ForceMotion, size: float) -> tuple[tuple[str, str], Array] | None:
-    """Return the two bodies of a torsion spring, and where they are pinned together (T, 2); None where they are not."""
+    """Return the two bodies of a torsion spring and the place (T, 2) of their pin; None without a pin."""
     if force.look != "spiral" or force.shape is None:
         return None
     for joint in motion.joints.values():

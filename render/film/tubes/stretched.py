@@ -1,5 +1,6 @@
-"""Elements that change their shape: coils of springs, cylinder and rod of dampers and linear drivers, ropes. As
-tubes along paths.
+"""Elements that change their shape, as tubes: springs, dampers, linear drivers, ropes.
+
+Springs are coils; dampers and drivers are a cylinder and a rod.
 """
 
 from __future__ import annotations
@@ -118,7 +119,7 @@ def stretched(
 
 
 def helix(a: Array, b: Array, radius: float, turns: int, hook: float = HOOK) -> Array:
-    """Return points (n, 3) of a wire from ``a`` to ``b``: along the axis, ``turns`` round it, along the axis again.
+    """Return points (n, 3) of a wire from ``a`` to ``b``: straight ends, and ``turns`` round the axis.
 
     The coils lie about the line between the ends at ``radius`` (m); the wire bends into them within a turn.
     """
@@ -138,8 +139,9 @@ def helix(a: Array, b: Array, radius: float, turns: int, hook: float = HOOK) -> 
 
 
 def sagging(a: Array, b: Array, length: float, down: Array) -> Array:
-    """Return points (ROPE_POINTS, 3) of a rope of ``length`` (m): straight where taut, else a parabola along
-    ``down``.
+    """Return points (ROPE_POINTS, 3) of a rope of ``length`` (m).
+
+    It is straight where taut, else a parabola along ``down``.
     """
     part = np.linspace(0, 1, ROPE_POINTS)
     line = a + part[:, None] * (b - a)
@@ -162,8 +164,9 @@ def _coil(name: str, radius: float, least: float, most: float) -> list[tuple[Tub
 
 
 def cylinder_tubes(name: str, radius: float, least: float, most: float) -> list[tuple[TubeSpec, Path]]:
-    """Return a cylinder from the first end, a rod from the second that never leaves it or reaches through; one that
-    goes out by far is longer, and by farther a telescope.
+    """Return a cylinder from the first end, and a rod from the second that never leaves it.
+
+    The rod does not reach through. One that goes out by far is longer, and by farther a telescope.
     """
     body, stages = 0.68 * least, 1
     reach = min(0.9 * least, max(0.45 * least, most - 0.9 * body))

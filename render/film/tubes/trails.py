@@ -17,9 +17,9 @@ from shared.contract.signals import SIGNALS, linear
 RINGS, MOST_RINGS = 160, 3000
 """Numbers of rings of a trail: the fewest and the most."""
 STRAY = 0.15
-"""How far a trail may stray from its point's way between two rings, in its own radii."""
+"""Largest distance of a trail from its point's way between two rings, in its own radii."""
 LIGHT, INK = 2.9, 1.2
-"""How bright a trail is: one that shines, and one on what is bright itself."""
+"""Brightness of a trail: one that shines, and one on what is bright itself."""
 BENT = 0.995
 """Part of the motion over which that holds; stiff contacts accelerate a point at will for a moment."""
 
@@ -55,8 +55,9 @@ class Trails:
         ]
 
     def paths(self, frame: float) -> list[list[Point]]:
-        """Return where each point was, from now back to the end of its tail; where an impact turned it is among the
-        places.
+        """Return where each point was, from now back to the end of its tail.
+
+        Where an impact turned it is among the places.
         """
         out = []
         for trail, rings in zip(self.trails, self._rings, strict=True):

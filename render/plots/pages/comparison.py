@@ -20,7 +20,7 @@ from shared.contract.quantity import labelled
 # Pages on which several motions of one mechanism lie over each other, a colour each.
 
 PANELS = 9
-"""On one page; of more, those in which the motions differ most."""
+"""Number of panels on one page; of more, those in which the motions differ most."""
 STILL = 1e-9
 """m or rad: what varies less stands still."""
 WIDE = 3.4
@@ -221,7 +221,7 @@ Series = tuple[np.ndarray, np.ndarray]
 
 
 def spectra_figure(name: str, motions: Mapping[str, Motion], asked: Sequence[str]) -> Figure | None:
-    """Return a panel for each component of what is asked for; None where no motion has any, or none repeats."""
+    """Return a panel for each component asked for; None where no motion has any, or none repeats."""
     panels = _panels(motions, asked)[:PANELS]
     if not panels:
         return None

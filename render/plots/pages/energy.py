@@ -1,4 +1,4 @@
-"""Energy and power: of the mechanism, of its drivers, of forces that give or take, and what impacts take at once."""
+"""Energy and power of the mechanism, its drivers and its forces, and the energy lost in impacts."""
 
 from __future__ import annotations
 
@@ -49,10 +49,11 @@ def energy(motion: Motion) -> Figure:
 
 
 def powers(motion: Motion) -> tuple[np.ndarray, np.ndarray]:
-    """Return (T,) power of all drivers, and the rate of kinetic and potential energy (W), rounding taken for zero.
+    """Return (T,) power of all drivers, and the rate of kinetic and potential energy (W).
 
-    Rates of the kinetic energy and of weights follow from velocities and accelerations, so they are right at either
-    side of an impact; that of elastic energy is the slope between samples, never across an event.
+    Rounding counts as zero. Rates of the kinetic energy and of weights follow from velocities and accelerations, so
+    they are right at either side of an impact; that of elastic energy is the slope between samples, never across an
+    event.
     """
     time = np.asarray(motion.time)
     given = np.sum([driver.power for driver in motion.drivers.values()], axis=0) if motion.drivers else 0.0 * time

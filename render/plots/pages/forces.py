@@ -36,9 +36,7 @@ PANELS = 12
 
 
 def reactions(motion: Motion) -> Figure:
-    """Return the magnitude of every joint's reaction (N), its torque where it carries one (N m), and the drivers'
-    effort.
-    """
+    """Return the size of every joint's reaction (N), its torque (N m) if any, and the drivers' effort."""
     over = horizon(motion)
     weak, slack = NOISE * force_scale(motion), NOISE * torque_scale(motion)
     forces = [(n, np.hypot(joint.fx, joint.fy), ink_of(motion, joint.bodies)) for n, joint in motion.joints.items()]
@@ -70,9 +68,7 @@ def reactions(motion: Motion) -> Figure:
 
 
 def forces(motion: Motion) -> Figure:
-    """Return signed size of every force (N) and torque (N m), what rigid contacts press with, and the power of forces
-    (W).
-    """
+    """Return signed forces (N) and torques (N m), normal forces of rigid contacts, and powers (W)."""
     over = horizon(motion)
     weak, slack = NOISE * force_scale(motion), NOISE * torque_scale(motion)
     pushing, turning, giving = [], [], []
@@ -105,8 +101,9 @@ def forces(motion: Motion) -> Figure:
 
 
 def hodographs(motion: Motion) -> Figure:
-    """Return the tip of each joint's reaction vector (N) over the motion, drawn from the origin; the dot is the
-    start.
+    """Return the path of each joint's reaction vector (N) over the motion, with a dot at the start.
+
+    Vectors are drawn from the origin.
     """
     weak = NOISE * force_scale(motion)
     sizes = {name: float(np.hypot(joint.fx, joint.fy).max()) for name, joint in motion.joints.items()}
@@ -174,7 +171,10 @@ STILL = 1e-9
 
 
 def frame(motion: Motion) -> Figure:
-    """Return the force of inertia (N), couples about axes in the plane (N m), and the way of the centre of mass (m)."""
+    """Return the force of inertia (N), its couples (N m) and the way of the centre of mass (m).
+
+    Couples are about axes in the plane.
+    """
     over, shaken, vibration = horizon(motion), shaking(motion), motion.vibration
     assert vibration is not None
     assert shaken.mx is not None

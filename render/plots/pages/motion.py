@@ -32,7 +32,7 @@ Line = tuple[str, np.ndarray, str]
 
 
 def bodies(motion: Motion) -> Figure:
-    """Return the angle (degrees), angular velocity (rad/s) and angular acceleration (rad/s^2) of every body."""
+    """Return angle (degrees), angular velocity (rad/s) and acceleration (rad/s^2) of every body."""
     figure = page(motion.mechanism, "angles of the bodies", "angle, angular velocity and angular acceleration")
     kinds = (("theta", "angle", "°"), ("omega", "velocity", "rad/s"), ("alpha", "acceleration", "rad/s²"))
     over = horizon(motion)
@@ -63,9 +63,10 @@ def slider(motion: Motion, name: str) -> Figure:
 
 
 def draw(axes: Axes, over: Horizon, words: str, unit: str, lines: Sequence[Line], *, floor: float = 0.0) -> None:
-    """Draw lines (in ``unit``) with their labels at the right; of many, the largest get labels and the rest stay faint.
+    """Draw lines (in ``unit``) with labels at the right; of many, only the largest are labelled.
 
-    What is below ``floor`` is rounding and drawn as zero. Lines of one body differ by their dashes.
+    The rest stay faint. What is below ``floor`` is rounding and drawn as zero. Lines of one body differ by their
+    dashes.
     """
     lines = [(text, without_noise(values, floor), ink) for text, values, ink in lines]
     by_size = sorted(lines, key=lambda line: -float(np.ptp(line[1])))
@@ -139,9 +140,7 @@ Panel = tuple[str, str, np.ndarray, str]
 
 
 def turns(motion: Motion) -> Figure:
-    """Return the speed of the crank, acceleration of what follows it on ground, reaction at its axis, over its
-    angle.
-    """
+    """Return crank speed, acceleration of what follows it on ground and axis reaction, over its angle."""
     crank = crank_of(motion)
     if crank is None:
         raise ValueError(f"{motion.mechanism}: no crank turns in this motion")
@@ -209,8 +208,9 @@ def _panels(motion: Motion, crank: Crank) -> list[Panel]:
 
 
 def _follower(motion: Motion, crank: str) -> str | None:
-    """Return the last body that a joint holds on ground beside the crank, and that comes back: the output of most
-    machines.
+    """Return the last body that a joint holds on ground beside the crank and that comes back.
+
+    It is the output of most machines.
     """
     held = [body for joint in motion.joints.values() if "ground" in joint.bodies for body in joint.bodies]
     others = [body for body in dict.fromkeys(held) if body not in ("ground", crank)]
@@ -238,7 +238,10 @@ WHEELS = 2.0
 
 
 def path(motion: Motion, skeleton: Skeleton) -> Figure:
-    """Return the skeleton in its poses, the first strong; ways of the joints, curves of the traced points (m)."""
+    """Return the skeleton in its poses, ways of the joints, and curves of the traced points (m).
+
+    The first pose is strong.
+    """
     figure = page(
         motion.mechanism,
         "path",
@@ -311,7 +314,7 @@ def _curves(axes: Axes, motion: Motion, skeleton: Skeleton, labels: Labels) -> N
 
 
 def _ink(role: str, motion: Motion) -> str:
-    """Return the colour that a role of skeleton.json has on this page; a body's is that of its other plots."""
+    """Return the colour of a role of skeleton.json on this page; a body has that of its other plots."""
     body = role.removeprefix("body:")
     if body != role and body in motion.bodies:
         return motion.bodies[body].colour

@@ -25,7 +25,10 @@ FEW = 4
 
 
 def gas(motion: Motion) -> Figure:
-    """Return the indicator diagram of the first chambers, and the pressure in all of them; the last cycle of each."""
+    """Return the indicator diagram of the first chambers, and the pressure in all of them.
+
+    It is that of each chamber's last cycle.
+    """
     known = [(name, force.gas) for name, force in motion.forces.items() if force.gas is not None]
     inks = apart([acting_on(motion, name) for name, _ in known])
     chambers = [(name, chamber, ink) for (name, chamber), ink in zip(known, inks, strict=True)]

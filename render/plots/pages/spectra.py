@@ -172,8 +172,10 @@ def _draw_amplitudes(figure: Figure, axes: Axes, what: Quantity, lines: Spectrum
 
 
 def stems(axes: Axes, lines: Spectrum, amplitudes: np.ndarray, inks: list[str], names: list[str]) -> None:
-    """A stem for each order above 0 and each column (K, k) of ``amplitudes``, with numbers on top; those that an order
-    has stand side by side with their middle on the order."""
+    """Draw a stem for each order above 0 and each column (K, k) of ``amplitudes``, with numbers on top.
+
+    Stems of one order stand side by side with their middle on the order.
+    """
     last = shown_orders(lines)
     at, shown = lines.at[1 : last + 1], amplitudes[1 : last + 1]
     step = float(at[0])

@@ -1,4 +1,4 @@
-"""Impacts: of rigid contacts, stops and ropes at their events, of contacts that yield where their gap closes.
+"""Impacts: of rigid contacts, stops and ropes at events, of compliant contacts where gaps close.
 
     rigid     impulse J of the event; it lasts, after Hertz,
               tau = 2.87 (m^2 / (R E^2 v))^(1/5)     v = J / m    1 / E = 1 / E_1 + 1 / E_2    1 / m = 1 / m_1 + 1 / m_2

@@ -23,7 +23,7 @@ NAME = "knocks"
 CLEARANCE = 5e-4
 """Clearance of a joint, as a part of the size of its body."""
 LONG = 0.0006
-"""How long a knock lasts (s)."""
+"""Duration of a knock (s)."""
 NEAR = 0.25
 """A force passes zero where it is below this part of its largest, and ends up the other way."""
 SUDDEN = 8.0
@@ -56,7 +56,10 @@ def _joint(setting: Setting, desk: Desk, joint: JointMotion) -> None:
 
 
 def _crossings(setting: Setting, joint: JointMotion, force: Array, clearance: float) -> tuple[Array, Array]:
-    """Return times at which the force of a joint turns round within a small part of its size, and impulses."""
+    """Return times at which the force of a joint turns round, and its impulses.
+
+    It turns within a small part of its size.
+    """
     time, size = setting.time, np.hypot(*force)
     steps = np.diff(time)
     low = np.flatnonzero((size[1:-1] <= size[:-2]) & (size[1:-1] < size[2:]) & (size[1:-1] < NEAR * size.max())) + 1

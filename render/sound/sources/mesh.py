@@ -1,4 +1,4 @@
-"""Teeth that mesh, of gears, racks, chains and toothed belts: each is a small stroke, together they are a tone.
+"""Teeth that mesh, of gears, racks, chains and toothed belts: small strokes that sum to a tone.
 
     phase    n = z (theta - phi) / 2 pi     a tooth of the wheel with z teeth meets the line of centres, at phi,
                                             whenever n passes a whole number: f = z omega / 2 pi on a fixed axis
@@ -29,7 +29,7 @@ SHARE = 0.15
 LIGHT = 0.02
 """Load of teeth that transmit none, as a part of the weight of the lighter wheel."""
 LONG = 0.0003
-"""How long the stroke of a tooth lasts (s)."""
+"""Duration of the stroke of a tooth (s)."""
 WEIGHTS = tuple(1 / k**2 for k in range(1, 7))
 MOST = 60_000
 """Strokes of one pair in a showing; of more the tone alone is heard."""
@@ -62,14 +62,17 @@ def _pair(setting: Setting, desk: Desk, joint: JointMotion, shape: Shape) -> Non
 
 
 def _load(joint: JointMotion, shape: Shape) -> Array:
-    """Return (T,) force between the teeth (N); of a belt, whose reaction is a torque, that over the radius."""
+    """Return (T,) force between the teeth (N).
+
+    A belt's reaction is a torque; its force is that over the radius.
+    """
     force, torque = np.hypot(joint.fx, joint.fy), np.abs(joint.torque)
     radius = shape.radius_second or shape.radius_first
     return np.maximum(force, torque / radius) if radius else force
 
 
 def teeth_passed(setting: Setting, shape: Shape) -> Array:
-    """Return (M + 1,) how many teeth have passed the place where two wheels, or a pinion and its rack, meet."""
+    """Return (M + 1,) how many teeth have passed the mesh of two wheels, or of a pinion and a rack."""
     (a, b), (first, second) = shape.bodies, shape.markers
     if len(shape.teeth) == 1:
         return shape.teeth[0] * (setting.angle(b) - setting.angle(a)) / math.tau
@@ -79,7 +82,7 @@ def teeth_passed(setting: Setting, shape: Shape) -> Array:
 
 
 def _of_ring(setting: Setting, shape: Shape, line: Array) -> Array:
-    """Return the same where the first wheel stands still: its teeth pass the line of centres as that turns."""
+    """Return the same if the first wheel stands still: teeth pass the line of centres as that turns."""
     return -shape.teeth[0] * line / math.tau
 
 

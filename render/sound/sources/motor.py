@@ -55,7 +55,7 @@ def play(setting: Setting, desk: Desk) -> None:
 
 
 def _takes(setting: Setting, power: list[float]) -> bool:
-    """Return True if it takes more work than it gives, as a load does, or what holds an engine at its speed."""
+    """Return True if it takes more work than it gives, as a load or a speed governor does."""
     given, all_of_it = (float(np.trapezoid(values, setting.time)) for values in (power, np.abs(power)))
     return given < -TAKEN * all_of_it
 

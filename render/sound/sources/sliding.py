@@ -1,4 +1,4 @@
-"""Friction: pins in bores, sliders on guides, followers on cams, contacts that slide, wheels that roll.
+"""Friction: pins in bores, sliders on guides, followers on cams, sliding contacts, rolling wheels.
 
     sliding   P = mu N v         v: speed of the surfaces; of a pin omega r, r a fiftieth of the machine's size
     rolling   P = c N v          c = 0.002, v = omega r
@@ -76,7 +76,7 @@ def _joint(setting: Setting, joint: JointMotion) -> Iterator[Rubbing]:
 def _touching(
     setting: Setting, joint: JointMotion | ContactMotion, load: Array, x: Array, y: Array
 ) -> Iterator[Rubbing]:
-    """Yield slides as far as its surfaces have other speeds where they touch, and rolls as its bodies turn."""
+    """Yield slides where its surfaces have different speeds, and rolls as its bodies turn."""
     speed = setting.slip(joint.bodies, x, y)
     yield Rubbing(FRICTION * load * speed, speed, x, y)
     radius = joint.shape.radius_second if joint.shape else None

@@ -54,7 +54,7 @@ def _spring(setting: Setting, desk: Desk, name: str, force: ForceMotion) -> None
 
 
 def surge_of(force: ForceMotion) -> tuple[float, float]:
-    """Return the lowest frequency (Hz) of waves along the wire of a spring, and the mass of that wire (kg)."""
+    """Return the lowest frequency (Hz) of waves along the wire of a spring, and the wire's mass (kg)."""
     stored, travel = float(np.ptp(force.potential)), float(np.ptp(np.asarray(force.value)))
     wire = max(2 * SHEAR * DENSITY * stored / STRESS**2, 1e-6)
     stiffness = float(np.ptp(np.asarray(force.effort))) / max(travel, 1e-12)

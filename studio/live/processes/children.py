@@ -143,8 +143,8 @@ class Child:
         if outcome["used"]:
             return (
                 f"mechanism.py has taken {outcome['used'] / 2**30:.1f} GiB of memory, more than the "
-                f"{self._most_bytes / 2**30:.1f} GiB that a live page gives it, and was stopped; fewer steps or a "
-                "shorter motion need less"
+                f"{self._most_bytes / 2**30:.1f} GiB that a live page gives it, and was stopped. Use fewer steps or a "
+                "shorter motion"
             )
         how = ending(outcome["ended"])
         return f"mechanism.py ended the process it ran in ({how}); no file of a mechanism should do that"

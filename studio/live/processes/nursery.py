@@ -44,7 +44,7 @@ class Nursery:
         self._starting: asyncio.Task[WarmProcess] | None = None
         self._children: set[asyncio.Task[None]] = set()
         self._since = 0.0
-        """When the warm process was ready (s, by the monotonic clock)."""
+        """Time at which the warm process was ready (s, by the monotonic clock)."""
         self._ended = False
 
     @property

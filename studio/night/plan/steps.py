@@ -1,4 +1,4 @@
-"""Steps of a mechanism, from its files to its film, and the board of all: which are done, which may start."""
+"""Steps of a mechanism from its files to its film, and the board of all: complete or ready to start."""
 
 from __future__ import annotations
 

@@ -79,7 +79,7 @@ def test_arms_reach_what_they_hold() -> None:
         (lambda: Figure().arms((0.0, 0.0), (1.0, 0.0)), r"the hand is 1 m from the shoulder.* reaches from 0\.\d+ to"),
     ],
 )
-def test_what_is_no_figure_is_refused(wrong, message: str) -> None:
+def test_invalid_figures_are_refused(wrong, message: str) -> None:
     with pytest.raises(ModelError, match=message):
         wrong()
 
@@ -140,7 +140,7 @@ def test_the_three_lifts_differ_as_was_measured(lifts: dict[str, Lift]) -> None:
     assert late["hip thrust"] > 2 * max(late["squat"], late["deadlift"])
 
 
-def test_what_a_study_measures_is_of_the_lift(lifts: dict[str, Lift]) -> None:
+def test_measures_of_a_study_are_those_of_the_lift(lifts: dict[str, Lift]) -> None:
     measured = peaks(squat(WHO, LOAD), WHO, steps=360)
     lift = lifts["squat"]
     assert measured["hip"] == pytest.approx(lift.moment("hip").max() / WHO.mass)
@@ -168,6 +168,6 @@ def test_joints_and_flexions_are_named(lifts: dict[str, Lift]) -> None:
         (lambda: deadlift(floor=-1.0), r"deadlift: floor is -1 m; it must be 0 m or more"),
     ],
 )
-def test_what_no_lifter_can_do_is_refused(wrong, message: str) -> None:
+def test_impossible_lifts_are_refused(wrong, message: str) -> None:
     with pytest.raises(ModelError, match=message):
         wrong()

@@ -123,7 +123,7 @@ def test_bad_layouts_are_refused() -> None:
         layout("x", [0, 0], [0])
     with pytest.raises(ModelError, match="cylinder 2: bank is nan"):
         layout("x", [0, math.nan], [0, 0])
-    with pytest.raises(ModelError, match="take a longer one"):
+    with pytest.raises(ModelError, match="use a longer rod"):
         piston_harmonics(1.0)
     with pytest.raises(ModelError, match="at least one bank"):
         fan([], [0])

@@ -115,7 +115,7 @@ def test_the_strokes_of_articulated_pistons_are_a_little_longer() -> None:
     assert all(1.0 < stroke / STROKE < 1.03 for stroke in strokes[1:])
 
 
-def test_what_the_knuckle_pins_leave_is_what_the_closed_form_says() -> None:
+def test_the_residue_of_knuckle_pins_is_that_of_the_closed_form() -> None:
     """With rods as masses at their ends: a second order turns with the shaft, twice as fast, and rods on one pin have
     none of it.
     """
@@ -191,6 +191,6 @@ def test_an_engine_on_mounts_has_a_master_rod() -> None:
         ({"bank_offset": 0.02}, "bank_offset is 20 mm, but rods on a master rod are in one plane"),
     ],
 )
-def test_what_cannot_be_is_refused(arguments: dict[str, Any], words: str) -> None:
+def test_invalid_requests_are_refused(arguments: dict[str, Any], words: str) -> None:
     with pytest.raises(ModelError, match=words):
         engine(**({"layout": "radial-5"} | SIZE | arguments))

@@ -81,7 +81,7 @@ def test_gas_shakes_a_block_only_whose_motor_stands_elsewhere() -> None:
     assert within.largest_angle()[0] < 1e-3 * across.largest_angle()[0]
 
 
-def test_what_has_no_response_is_refused() -> None:
+def test_models_without_a_response_are_refused() -> None:
     on_ground = engine("I1", **SIZE, speed=10.0)
     with pytest.raises(ModelError, match="I1: mount_response: the engine stands on ground; make it with block="):
         mount_response(on_ground, [10.0])

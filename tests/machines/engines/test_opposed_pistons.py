@@ -113,6 +113,6 @@ def test_a_table_of_pressures_needs_the_gap() -> None:
         ({"counterweight": "some"}, "counterweight 'some'; it is 'auto'"),
     ],
 )
-def test_what_cannot_be_is_refused(arguments: dict[str, Any], words: str) -> None:
+def test_invalid_requests_are_refused(arguments: dict[str, Any], words: str) -> None:
     with pytest.raises(ModelError, match=words):
         opposed_pistons(**(SIZE | arguments))

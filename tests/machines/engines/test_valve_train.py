@@ -53,12 +53,12 @@ def test_the_camshaft_turns_at_half_speed_and_springs_close_the_valves() -> None
         ("W12", {}, {}, "it has 3 banks"),
         ("radial-5", {}, {}, "pistons on a master rod"),
         ("I1", {"gas": two_stroke(8.0)}, {}, "a cycle of one turn"),
-        ("I1", {}, {"base_radius": 0.01}, r"would be undercut, because a flat tappet asks here for more than 2\d"),
+        ("I1", {}, {"base_radius": 0.01}, r"would be undercut: a flat tappet needs more than 2\d"),
         ("I1", {}, {"height": 0.285}, "between the heads and the tappets there is no room for springs"),
         ("I1", {}, {"height": 0.24}, "its cams would reach into the cylinders"),
     ],
 )
-def test_what_cannot_be_is_refused(layout: str, given: dict[str, Any], valves: dict[str, Any], words: str) -> None:
+def test_invalid_requests_are_refused(layout: str, given: dict[str, Any], valves: dict[str, Any], words: str) -> None:
     with pytest.raises(ModelError, match=words):
         engine(layout, **SIZE, **given, valves=ValveTrain(**valves), speed=SPEED)
 

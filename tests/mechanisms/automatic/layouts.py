@@ -1,4 +1,4 @@
-"""Whether the layout of automatic parts keeps its own rules, seen anew."""
+"""Rules of the layout of automatic parts, checked anew."""
 
 from __future__ import annotations
 

@@ -178,40 +178,6 @@ def parts(p: Params) -> dict[str, list[Solid]]:
     made.replace("arm", [Solid("stick", bar.faces(">Z").workplane(origin=(0, 0, 0)).hole(9.0), "pla_orange", 1)])
     return made.solids()
 """
-YOKE = """
-from dataclasses import dataclass
-from math import pi
-
-from mbsd import Mechanism, constant_rate
-
-
-@dataclass(frozen=True)
-class Params:
-    crank: float = 0.04
-
-
-def build(p: Params) -> Mechanism:
-    m = Mechanism("arm")
-    crank, yoke = m.bar("crank", p.crank), m.body("yoke")
-    m.revolute("A", m.ground.at(0, 0), crank.start)
-    m.prismatic("guide", m.ground.at(0.14, 0), yoke.at(0.14, 0))
-    m.pin_in_slot("slot", yoke.at(0, 0, pi / 2), crank.end)
-    m.drive_angle("motor", crank, constant_rate(2 * pi))
-    m.start_near(crank=0, yoke=(0.04, 0, 0))
-    return m
-"""
-
-
-def test_slider_and_slot_get_parts_that_never_touch(project: Project, capsys: pytest.CaptureFixture[str]) -> None:
-    (project.folder / "mechanism.py").write_text(YOKE)
-    project.run()
-    solve_stage.run("arm")
-    clearance_stage.run("arm")
-    assert "none touch" in capsys.readouterr().out
-    parts = read_parts(Out("arm").parts)
-    assert {"rail_guide", "post_guide_1"} <= set(parts.bodies["ground"].pieces)
-    assert set(parts.bodies["yoke"].pieces) == {"yoke", "gib_guide_1", "gib_guide_2"}
-    assert {"pin_slot", "roller_slot"} <= set(parts.bodies["crank"].pieces)
 
 
 # Words, fits and pins of automatic parts: what one may want otherwise.
@@ -338,18 +304,14 @@ SUNK, WEBS = 46, 73
 
 @cache
 def planned(number: int) -> Automatic:
-    """Of one of the hundred random mechanisms."""
+    """Return the plan of one of the hundred random mechanisms."""
     _, subject, _ = drawn(SEED + number, KINDS[number % len(KINDS)])
     return Automatic(subject.m, case.moved(subject, steps=120))
 
 
 def test_a_block_passes_over_a_pivot_that_is_sunk_into_its_guide() -> None:
     automatic = planned(SUNK)
-    (pivot,) = (
-        pin
-        for pin in automatic.layout.features
-        if isinstance(pin, Pin) and pin.is_flush(automatic.decided, automatic.layout)
-    )
+    (pivot,) = (pin for pin in automatic.layout.select(Pin) if pin.is_flush(automatic.decided, automatic.layout))
     (guide,) = pivot.movers
     assert not meets(automatic)
     solids = automatic.plan().solids
@@ -363,11 +325,11 @@ def test_a_crank_of_two_webs_carries_a_rod_on_either_side() -> None:
     automatic = planned(WEBS)
     assert not meets(automatic)
     ((web, body),) = automatic.layout.webs.items()
-    (joining,) = (pin for pin in automatic.layout.features if isinstance(pin, Pin) and pin.webs)
+    (joining,) = (pin for pin in automatic.layout.select(Pin) if pin.webs)
     between = [automatic.levels[b] for b in joining.movers if b not in (web, body)]
     low, high = sorted((automatic.levels[web], automatic.levels[body]))
     assert low < min(between) <= max(between) < high
-    for other in (pin for pin in automatic.layout.features if isinstance(pin, Pin) and pin is not joining):
+    for other in (pin for pin in automatic.layout.select(Pin) if pin is not joining):
         assert not {web, body} <= set(other.places), "no other pin is on both"
     (pin,) = (
         solid

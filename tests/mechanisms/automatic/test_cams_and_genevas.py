@@ -49,14 +49,14 @@ def _follower(flat: bool) -> Mechanism:
 
 
 def _cam(made: Automatic) -> Cam:
-    return next(feature for feature in made.layout.features if isinstance(feature, Cam))
+    return made.layout.select(Cam)[0]
 
 
 @pytest.mark.parametrize("slots", [3, 4, 6])
 def test_geneva_has_room_for_its_hubs_and_pins(slots: int) -> None:
     made = _planned(geneva(slots), 2 * math.pi)
     assert made.levels["crank"] != made.levels["wheel"]
-    drive = next(feature for feature in made.layout.features if isinstance(feature, GenevaDrive))
+    drive = made.layout.select(GenevaDrive)[0]
     sizes, shape = made.sizes, drive.shape
     assert shape.distance == pytest.approx(sizes.of_metres(0.1))
     assert shape.bottom > sizes.eye  # the hub stays within the slots' bottoms
@@ -77,7 +77,7 @@ def test_head_of_the_pin_of_a_geneva_has_room_under_an_arm_that_carries_both(top
     m.drive_relative_angle("motor", arm, crank, constant_rate(1.0))
     m.start_near(wheel=5)
     made = _planned(m, 2 * math.pi)
-    drive = next(feature for feature in made.layout.features if isinstance(feature, GenevaDrive))
+    drive = made.layout.select(GenevaDrive)[0]
     levels = {"crank": 0, "wheel": 1, "arm": 2} if top == "arm" else {"arm": 0, "crank": 1, "wheel": 2}
     above = [need for need in drive.needs(levels, made.layout) if need.gap == levels["wheel"]]
     assert bool(above) == head

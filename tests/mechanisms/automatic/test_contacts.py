@@ -43,8 +43,7 @@ def _room(scale: float = 1.0, turn: float = 0.0, stiffness: float = 0.0) -> Mech
 
 def _planned(m: Mechanism, duration: float = 0.5, steps: int = 300) -> tuple[Automatic, list[Round], list[Road]]:
     made = Automatic(m, m.simulate(duration, steps, event_rows=True))
-    features = made.layout.features
-    return made, [f for f in features if isinstance(f, Round)], [f for f in features if isinstance(f, Road)]
+    return made, made.layout.select(Round), made.layout.select(Road)
 
 
 @pytest.mark.parametrize("stiffness", [0.0, 1e6])
@@ -208,7 +207,7 @@ def test_a_roller_that_a_pin_fills_is_refused() -> None:
 
 def test_a_closed_curve_that_pushes_is_a_cam_with_a_roller() -> None:
     made, _, _ = _planned(_valve(), 0.4)
-    (cam,) = [f for f in made.layout.features if isinstance(f, Cam)]
+    (cam,) = made.layout.select(Cam)
     scale = made.sizes.of_metres(1.0)
     assert cam.roller == pytest.approx(0.012 * scale - cam.clear)
     assert cam.base == pytest.approx(0.024 * scale, rel=1e-3)

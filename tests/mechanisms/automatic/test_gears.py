@@ -62,7 +62,7 @@ def planetary(planets: int, sun: int = SUN, planet: int = PLANET, module: float 
 
 
 def _wheels(made: Automatic) -> list[Wheel]:
-    return [feature for feature in made.layout.features if isinstance(feature, Wheel)]
+    return made.layout.select(Wheel)
 
 
 @pytest.mark.parametrize("teeth", [(12, 30), (20, 20), (45, 17)])
@@ -217,7 +217,7 @@ def test_a_pivot_on_the_axis_of_a_wheel_of_ground_stands_on_that_wheel() -> None
 APART = 0.08
 
 type Machine = Callable[[float, float], Mechanism]
-"""Of the angle by which its world is turned and the radius of its wheel."""
+"""Mechanism by the angle by which its world is turned and the radius of its wheel."""
 
 
 def seen(turn: float, x: float, y: float = 0.0) -> tuple[float, float]:
@@ -329,7 +329,7 @@ MACHINES: tuple[Machine, ...] = (camshaft, geneva, cardan, toy_car, press, two_v
 
 def made_of(m: Mechanism) -> tuple[Automatic, dict[str, Wheel]]:
     made = Automatic(m, m.sweep(2 * pi, steps=240))
-    return made, {wheel.body: wheel for wheel in made.layout.features if isinstance(wheel, Wheel)}
+    return made, {wheel.body: wheel for wheel in made.layout.select(Wheel)}
 
 
 @pytest.mark.parametrize("turn", [0.0, 0.7, 2.6])
@@ -383,10 +383,10 @@ def test_arm_that_stays_away_from_the_mate_lies_in_the_gears_layer() -> None:
     m.gear_pair("mesh", gear.start, pinion.origin, 0.05, 0.03)
     m.drive_angle("drive", gear, constant_rate(1.0, -1.0))
     made = Automatic(m, m.sweep(2.0, steps=60))
-    assert all(wheel.shares for wheel in made.layout.features if isinstance(wheel, Wheel))
+    assert all(wheel.shares for wheel in made.layout.select(Wheel))
     assert set(made.decided.values()) == {0}
     whole = Automatic(m, m.sweep(2 * pi, steps=240))
-    assert [wheel.body for wheel in whole.layout.features if isinstance(wheel, Wheel) and not wheel.shares] == ["gear"]
+    assert [wheel.body for wheel in whole.layout.select(Wheel) if not wheel.shares] == ["gear"]
 
 
 # Rings that turn and stepped gears by themselves: each toothed rim in its layer, carried by its body's plate.
@@ -419,10 +419,6 @@ def two_stages(teeth: tuple[int, int, int, int], bend: float = 0.0, module: floa
     return m
 
 
-def wheels(made: Automatic) -> list[Wheel]:
-    return [feature for feature in made.layout.features if isinstance(feature, Wheel)]
-
-
 def between(meshes: list[Any]) -> float:
     """The height (mm) between two pieces, one above the other."""
     low, high = sorted(meshes, key=lambda mesh: mesh.vertices[:, 2].min())
@@ -434,7 +430,7 @@ def between(meshes: list[Any]) -> float:
 def test_teeth_of_a_ring_that_turns_pass_its_pinion(pinion: int, more: int, turn: float) -> None:
     m = ring_drive((pinion + more, pinion), turn)
     made = Automatic(m, m.sweep(1.0, steps=20))
-    ring, small = wheels(made)
+    ring, small = _wheels(made)
     assert ring.ring
     assert made.decided[ring.layer] == made.decided["pinion"] != made.decided["ring"]
     count = len(made.layout.times)
@@ -457,7 +453,7 @@ def test_cup_is_rim_and_bottom() -> None:
 def test_stepped_wheels_mesh_in_two_layers(small: int, large: int, bend: float) -> None:
     m = two_stages((small, large, small, large), bend)
     made = Automatic(m, m.sweep(1.0, steps=20))
-    pairs = [(wheel, mate) for wheel in wheels(made) for mate in wheel.mates if isinstance(mate, Wheel)]
+    pairs = [(wheel, mate) for wheel in _wheels(made) for mate in wheel.mates if isinstance(mate, Wheel)]
     assert len(pairs) == 4
     count = len(made.layout.times)
     for wheel, mate in pairs:
@@ -501,7 +497,7 @@ def test_pinion_whose_two_mates_overlap_is_two(bend: float) -> None:
     m.gear_pair("two", middle.origin, last.origin, teeth=(12, 48), module=module)
     m.drive_angle("motor", first, constant_rate(1.0))
     made = Automatic(m, m.sweep(1.0, steps=40))
-    pinions = [wheel for wheel in wheels(made) if wheel.body == "middle"]
+    pinions = [wheel for wheel in _wheels(made) if wheel.body == "middle"]
     overlap = math.hypot(36 - 30 * math.cos(bend), 30 * math.sin(bend)) < 57  # with their teeth
     assert len(pinions) == (2 if overlap else 1)
     assert (made.decided["first"] != made.decided["last"]) == overlap

@@ -129,7 +129,7 @@ def planned(m: Mechanism, duration: float = math.pi / 10) -> Automatic:
 def test_a_pin_with_play_has_bushings_bored_as_much_wider() -> None:
     m = loose_crank(0.5e-3)
     parts = planned(m)
-    [pin] = [feature for feature in parts.layout.features if isinstance(feature, Pin) and feature.play]
+    [pin] = [feature for feature in parts.layout.select(Pin) if feature.play]
     moved = -m.simulate(math.pi / 10, 200, event_rows=True).force("B").gap.min() + 0.5e-3
     assert pin.name == "B"
     assert 1e3 * moved <= pin.play * parts.sizes.scale < 1.05e3 * moved  # it sees more poses than the outputs
@@ -159,7 +159,7 @@ def test_teeth_of_gears_with_play_have_their_backlash() -> None:
         m.gear_mesh("mesh", a.origin, b.origin, 1e7, teeth=(40, 20), module=3e-3, backlash=backlash)
         m.start_moving(a=5.0)
         parts = planned(m)
-        wheels = [feature for feature in parts.layout.features if isinstance(feature, Wheel)]
+        wheels = parts.layout.select(Wheel)
         for wheel in wheels:
             wheel.play *= parts.sizes.scale
         return wheels
@@ -201,8 +201,8 @@ def test_bolts_of_a_load_at_or_beside_a_joint_clear_its_hardware(body: str, plac
     """Such loads were refused for their bores, or their spacers met the flanges of bushings."""
     made = _loaded(*places, body=body)
     assert not meets(made)
-    welds = [feature for feature in made.layout.features if isinstance(feature, Weld)]
-    pins = [feature for feature in made.layout.features if isinstance(feature, Pin)]
+    welds = made.layout.select(Weld)
+    pins = made.layout.select(Pin)
     assert len(welds) == len(places)
     for weld in welds:
         ends = [
@@ -218,7 +218,7 @@ def test_bolts_of_a_load_at_or_beside_a_joint_clear_its_hardware(body: str, plac
 
 
 def test_a_weld_far_from_all_joints_stays_where_it_is() -> None:
-    (weld,) = [feature for feature in _loaded(0.1).layout.features if isinstance(feature, Weld)]
+    (weld,) = _loaded(0.1).layout.select(Weld)
     middle = np.mean(weld.bolts("load0"), axis=0)
     assert math.hypot(*middle) < 1e-9
 
@@ -262,7 +262,7 @@ def pendulum(scale: float = 1.0, turned: bool = False) -> Mechanism:
 
 
 def stops(made: Automatic) -> list[Stop]:
-    return [feature for feature in made.layout.features if isinstance(feature, Stop)]
+    return made.layout.select(Stop)
 
 
 def gaps(made: Automatic, stop: Stop) -> dict[str, float]:
@@ -397,6 +397,6 @@ def test_a_slot_ends_at_its_limits() -> None:
     m.drive_angle("motor", crank, constant_rate(1.0))
     m.start_near(crank=90, arm=20)
     made = Automatic(m, m.sweep())
-    [slot] = [feature for feature in made.layout.features if isinstance(feature, Slot)]
+    [slot] = made.layout.select(Slot)
     assert slot.path[0, 0] == pytest.approx(made.sizes.of_metres(0.04))
     assert slot.path[1, 0] == pytest.approx(made.sizes.of_metres(0.15) + 1.0, abs=1e-3)

@@ -145,7 +145,7 @@ def test_a_rod_lies_where_a_bar_would(scale: float, turn: float) -> None:
 
 def test_pins_at_both_ends_are_on_both_bodies() -> None:
     made = Automatic(four_bar_rods(), four_bar_rods().sweep())
-    pins = {f.name: f for f in made.layout.features if isinstance(f, Pin)}
+    pins = {f.name: f for f in made.layout.select(Pin)}
     assert set(pins) == {"A", "D", "coupler_1", "coupler_2"}
     for pin in (pins["coupler_1"], pins["coupler_2"]):
         seen = [placed(np.array([at]), made.layout.poses[body])[:, 0] for body, at in pin.places.items()]
@@ -189,7 +189,7 @@ def test_a_joint_that_is_called_like_a_body_has_a_rod_of_another_name() -> None:
 
 
 def stretched(made: Automatic) -> dict[str, Stretching]:
-    return {feature.force: feature for feature in made.layout.features if isinstance(feature, Stretching)}
+    return {feature.force: feature for feature in made.layout.select(Stretching)}
 
 
 def test_a_linear_driver_is_a_cylinder_between_studs() -> None:

@@ -14,11 +14,13 @@ from mbsd import Mechanism, harmonic, polynomial
 from mechanisms.belt_drive import mechanism as belt_drive
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.wheels.racks import Rack
-from mechanisms.stages.automatic.wheels.wheels import Wheel, shape_of
+from mechanisms.stages.automatic.wheels.wheels import TUBE, Wheel, shape_of
 from mechanisms.stages.parts.meshes import check_mesh, only_solid
 from mechanisms.stages.parts_files import read_mesh, stl_bytes
+from shared.shapes.build import extruded
 from shared.shapes.involute import longest_rack_tip, rack_outline
 from shared.shapes.link import Eye
+from shared.shapes.outline import circle
 from shared.stage.errors import UserError
 from tests.shared.shape_checks import checked
 from tools.models.outlines import gap
@@ -54,8 +56,7 @@ def drive(
 
 def made_of(m: Mechanism) -> tuple[Automatic, Rack, Wheel]:
     made = Automatic(m, m.sweep(steps=40))
-    features = made.layout.features
-    return made, next(f for f in features if isinstance(f, Rack)), next(f for f in features if isinstance(f, Wheel))
+    return made, made.layout.select(Rack)[0], made.layout.select(Wheel)[0]
 
 
 @settings(max_examples=10, deadline=None)
@@ -152,6 +153,38 @@ def test_a_pulley_without_room_has_none() -> None:
     pulley.radius -= 3.0
     assert pulley.root < 12.0
     assert shape_of(pulley, 7.0, [(0.0, 0.0, Eye(13.0, 11.0))])[1] == 1
+
+
+@pytest.mark.parametrize("root", [13.95, 14.5, 16.0, 18.0])
+def test_holes_of_a_pulley_on_a_tube_stay_clear_of_the_tube(root: float) -> None:
+    """A tube stands on the disc and closes what it covers, so that holes under it would be blind."""
+    m = belt_drive.build(belt_drive.Params())
+    (pulley,) = Automatic(m, m.sweep(steps=12)).layout.wheels["small"]
+    pulley.radius += root - pulley.root
+    inner, outer = TUBE
+    shape, windows = shape_of(pulley, 7.0, [(0.0, 0.0, Eye(outer, 0.0))])
+    shape = shape.union(extruded(circle(0, 0, outer), 11.0, -10.0)).cut(extruded(circle(0, 0, inner), 30.0, -15.0))
+    solid = only_solid(shape, "disc")
+    check_mesh(read_mesh(stl_bytes(solid)), solid.Volume(), 1 + windows, "disc")
+    marks = [face.BoundingBox() for face in solid.Faces() if face.geomType() == "CYLINDER"]
+    aside = [math.hypot(*box.center.toTuple()[:2]) - max(box.xlen, box.ylen) / 2 for box in marks]
+    assert all(place >= outer for place in aside if place > 0.0)
+
+
+@pytest.mark.parametrize("teeth", [6, 8, 9, 12])
+def test_sprockets_of_few_teeth_keep_a_disc_round_their_tube(teeth: int) -> None:
+    """Where a chain's spaces are deep, pins are thinner, so that the disc is not lost in its tube or its pin."""
+    m, pitch = Mechanism("chains"), 0.0125
+    wheels = [m.body(name) for name in "abc"]
+    for k, wheel in enumerate(wheels):
+        m.revolute(f"shaft{k}", m.ground.at(0.8 * k, 0.05 * k), wheel.origin)
+    m.belt("first", wheels[0].origin, wheels[1].origin, teeth=(12, teeth), pitch=pitch)
+    m.belt("second", wheels[1].origin, wheels[2].origin, teeth=(teeth, 12), pitch=pitch)
+    m.drive_angle("motor", wheels[0], polynomial(0.0, 1.0))
+    made = Automatic(m, m.sweep(1.0, steps=12))
+    pulleys = made.layout.wheels["b"]
+    assert len(pulleys) == 2
+    assert all(pulley.root > TUBE[1] for pulley in pulleys)
 
 
 def test_a_pulley_whose_body_reaches_beyond_it_lies_in_a_layer_of_its_own() -> None:

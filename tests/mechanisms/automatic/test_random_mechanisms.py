@@ -20,7 +20,6 @@ from shared.stage.errors import UserError
 from tests.mechanisms.automatic.layouts import meets
 from tools.hunt.case import drawn
 from tools.hunt.loop import seeds
-from tools.hunt.outcome import CaseResult
 from tools.hunt_parts import case
 from tools.hunt_parts.__main__ import hunt
 from tools.hunt_parts.outcome import BUILT, COLLIDES, ERROR, STUCK, UNSOUND, Kept, reason
@@ -229,16 +228,3 @@ def test_refusals_are_counted_without_names_and_numbers() -> None:
     assert reason(text) == "has no automatic parts: belt"
     assert reason("a: no order of layers lets x and y pass each other with pins of 4 mm") == "no order of layers"
     assert reason("a: gears of 'b' with 12.5 mm") == reason("c: gears of 'd' with 3e-2 mm")
-
-
-def test_results_name_their_kind() -> None:
-    result = case.run(SEED + 2, "slider-crank", solids=False)
-    assert isinstance(result, CaseResult)
-    assert (result.family, result.outcomes[-1].state) == ("slider-crank", BUILT)
-
-
-@pytest.mark.slow
-def test_post_of_a_spring_stands_beside_a_rail_on_ground() -> None:
-    """A chain on a slide: the post went through the rail."""
-    [outcome] = case.run(23_000_139).outcomes
-    assert outcome.state == BUILT, outcome.detail

@@ -49,9 +49,7 @@ def _cart(curve: bool) -> Mechanism:
 
 def _planned(m: Mechanism) -> tuple[Automatic, Round, np.ndarray]:
     made = Automatic(m, m.sweep(1.0, 200))
-    features = made.layout.features
-    [wheel] = [feature for feature in features if isinstance(feature, Round)]
-    [road] = [feature for feature in features if isinstance(feature, Road)]
+    [wheel], [road] = made.layout.select(Round), made.layout.select(Road)
     assert road.rounds == [wheel]
     return made, wheel, road.path
 
@@ -166,7 +164,7 @@ def vehicle(surface: str, turn: float = 0.0, apart: float = 0.2) -> Mechanism:
 
 
 def roads(made: Automatic) -> list[Road]:
-    return [feature for feature in made.layout.features if isinstance(feature, Road)]
+    return made.layout.select(Road)
 
 
 @pytest.mark.parametrize("turn", [0.0, 1.1])
@@ -330,7 +328,7 @@ ALL = {
 
 def made_of(solution: Solution) -> tuple[Automatic, Track]:
     made = Automatic(solution.mechanism, solution)
-    [track] = [feature for feature in made.layout.features if isinstance(feature, Track)]
+    [track] = made.layout.select(Track)
     return made, track
 
 

@@ -22,7 +22,6 @@ from shared.shapes.link import Eye
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.layouts import meets
 from tests.shared.shape_checks import checked
-from tools.hunt_parts.case import parts_of
 
 # Blocks along one line: on one rail where they never meet, on rails one above the other where they pass.
 
@@ -67,7 +66,7 @@ def beads() -> Mechanism:
 
 
 def slides(made: Automatic) -> list[Slide]:
-    return [feature for feature in made.layout.features if isinstance(feature, Slide)]
+    return made.layout.select(Slide)
 
 
 def rails(made: Automatic) -> list[str]:
@@ -175,17 +174,6 @@ def test_every_point_of_the_rod_draws_an_ellipse() -> None:
     np.testing.assert_allclose(np.hypot(middle.x, middle.y), p.pins / 2, rtol=1e-13)
 
 
-def test_grooves_at_another_angle_draw_an_ellipse_too() -> None:
-    """Its pen is an affine image of a circle: (x, y) = M (cos, sin)."""
-    p = trammel.Params(angle=math.pi / 3)
-    sol = trammel.build(p).sweep()
-    pen, turn = sol.point("pen"), p.speed * sol.t
-    circle = np.stack([np.cos(turn), np.sin(turn)])
-    second = p.pins / math.tan(p.angle)
-    image = np.array([[p.beyond, second], [0.0, p.pins + p.beyond]]) @ circle
-    np.testing.assert_allclose(np.stack([pen.x, pen.y]), image, atol=1e-14)
-
-
 def turned(scale: float, turn: float, angle: float = math.pi / 2) -> Mechanism:
     m = Mechanism("turned", gravity=None)
     first, second, rod = m.body("first"), m.body("second"), m.bar("rod", 0.15 * scale)
@@ -208,17 +196,10 @@ def turned(scale: float, turn: float, angle: float = math.pi / 2) -> Mechanism:
 def test_turned_and_scaled_the_layout_stays(scale: float, turn: float, angle: float) -> None:
     m = turned(scale, turn, angle)
     made = Automatic(m, m.sweep())
-    [crossing] = [feature for feature in made.layout.features if isinstance(feature, Crossing)]
+    [crossing] = made.layout.select(Crossing)
     assert crossing.middle == pytest.approx([made.sizes.of_metres(c * scale) for c in (0.3, 0.2)])
     assert made.levels == {"first": 0, "second": 0, "rod": 1}
     assert not meets(made)
-
-
-def test_no_part_of_the_trammel_touches_another() -> None:
-    m = trammel.build(trammel.Params())
-    outcome = parts_of(m, m.sweep(times=np.linspace(0.0, 4.0, 121)))
-    assert outcome.state == "built", outcome
-    assert outcome.detail.startswith("2 layers")
 
 
 def test_a_tongue_is_longer_than_the_groove_that_it_passes() -> None:

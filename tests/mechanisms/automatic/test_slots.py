@@ -77,7 +77,7 @@ def test_slots_get_an_order_of_layers(build: object) -> None:
     m = build()
     made = Automatic(m, m.sweep(times=TURN))
     assert not meets(made)
-    (slot,) = [feature for feature in made.layout.features if isinstance(feature, Slot)]
+    (slot,) = made.layout.select(Slot)
     seen = made.layout.seen(slot.pin, slot.pin_at, slot.slot)
     if len(slot.path) == 2:
         (x0, y0), (x1, y1) = slot.path
@@ -96,7 +96,7 @@ def test_welded_plates_are_on_layers_of_their_own() -> None:
     m = six_bar_with_welds()
     made = Automatic(m, m.sweep(times=TURN))
     assert not meets(made)
-    (weld,) = [feature for feature in made.layout.features if isinstance(feature, Weld)]
+    (weld,) = made.layout.select(Weld)
     assert set(weld.movers) == {"arm", "rocker"}
     assert made.levels["arm"] != made.levels["rocker"]
     first, second = (
@@ -253,9 +253,7 @@ def _runs(points: np.ndarray, at: int, speed: float, radius: float, duration: fl
 
 
 def _road(made: Automatic) -> tuple[Road, Round, np.ndarray]:
-    features = made.layout.features
-    [road] = [feature for feature in features if isinstance(feature, Road)]
-    [wheel] = [feature for feature in features if isinstance(feature, Round)]
+    [road], [wheel] = made.layout.select(Road), made.layout.select(Round)
     return road, wheel, made.layout.seen("bead", wheel.at, "ground")
 
 
@@ -263,7 +261,7 @@ def test_a_slot_goes_on_along_the_tangent_of_its_curve() -> None:
     """Along the last chord it left the pin's way by more than the roller's clearance."""
     m, solution = _runs(_arc(1.2), 30, 5.0, 0.0, 0.7)
     made = Automatic(m, solution)
-    [slot] = [feature for feature in made.layout.features if isinstance(feature, CurvedSlot)]
+    [slot] = made.layout.select(CurvedSlot)
     seen = made.layout.seen("bead", slot.pin_at, "ground")
     assert np.hypot(*seen[-1]) > 1.5 * np.hypot(*seen[0]), "the pin goes far beyond the curve"
     count = len(slot.path)
@@ -287,7 +285,7 @@ def test_a_road_goes_on_under_its_wheel(half: float) -> None:
     assert (road.band is not None) == (half > 2.0)
     sides = road.path[-1:], road.feet if road.band is None else road.band.back[::-1], road.path[:1]
     assert distances(centres, np.vstack(sides)).min() > wheel.built_radius
-    solid = road._wall(0.0, 5.0).val()
+    solid = road.wall(0.0, 5.0).val()
     assert solid.isValid()
 
 

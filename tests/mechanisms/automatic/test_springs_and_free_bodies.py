@@ -55,7 +55,7 @@ def planned(scale: float = 1.0, turn: float = 0.0) -> Automatic:
 
 
 def springs(made: Automatic) -> dict[str, Stretching]:
-    return {feature.force: feature for feature in made.layout.features if isinstance(feature, Stretching)}
+    return {feature.force: feature for feature in made.layout.select(Stretching)}
 
 
 @pytest.mark.parametrize(("scale", "turn"), [(1.0, 0.0), (0.1, 1.0), (30.0, -2.0)])
@@ -82,16 +82,14 @@ def test_what_the_film_draws_of_a_spring_meets_no_plate_and_no_other_spring(scal
 
 def test_springs_lie_over_their_bodies_and_over_the_pins_that_hold_them() -> None:
     made = planned()
-    for stud in (feature for feature in made.layout.features if isinstance(feature, Stud)):
+    for stud in made.layout.select(Stud):
         bodies = [b for b in (stud.pin.movers if stud.pin else [stud.body]) if b != "ground"]
         assert all(made.decided[spring.layer] > made.levels[body] for spring, _ in stud.ends for body in bodies)
 
 
 def test_ends_on_one_place_share_a_stud() -> None:
     made = planned()
-    studs = {
-        frozenset((spring.force, end) for spring, end in f.ends) for f in made.layout.features if isinstance(f, Stud)
-    }
+    studs = {frozenset((spring.force, end) for spring, end in f.ends) for f in made.layout.select(Stud)}
     assert frozenset({("return", 0), ("damper", 0)}) in studs
     assert frozenset({("return", 1), ("push", 1)}) in studs
     assert len(studs) == 6
@@ -211,7 +209,7 @@ def test_a_ball_on_a_rope_has_room_for_the_collar_of_its_stud(scale: float) -> N
 
 
 def free(made: Automatic) -> dict[str, FreeBody]:
-    return {feature.body: feature for feature in made.layout.features if isinstance(feature, FreeBody)}
+    return {feature.body: feature for feature in made.layout.select(FreeBody)}
 
 
 def thrown(masses: dict[str, float], apart: float = 0.3, scale: float = 1.0) -> Automatic:
@@ -324,7 +322,7 @@ def test_a_point_on_a_rim_gets_a_pointer_from_within(m: Mechanism) -> None:
     """An eye there broke the teeth, or met the road."""
     made = _planned(m)
     assert not meets(made)
-    (mark,) = [feature for feature in made.layout.features if isinstance(feature, RimMark)]
+    (mark,) = made.layout.select(RimMark)
     assert mark.points
     marker = m.traces["P"]
     assert (mark.x, mark.y) == pytest.approx(made.layout.place(marker))
@@ -344,7 +342,7 @@ def test_the_tip_of_a_pointer_is_never_under_its_collar(out: float) -> None:
     """A point just beyond the place of the pin: an outline round both has no sides."""
     m = _wheel(out)
     made = Automatic(m, m.sweep(times=np.linspace(0, 1, 61)), pin=16.0)
-    for mark in (feature for feature in made.layout.features if isinstance(feature, RimMark) and feature.points):
+    for mark in (mark for mark in made.layout.select(RimMark) if mark.points):
         assert math.dist(mark.at, (mark.x, mark.y)) + TIP > mark.radius + BASE
     made.plan()
 

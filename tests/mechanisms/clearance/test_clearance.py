@@ -176,7 +176,7 @@ def test_between_samples_too_coarse_to_prove_anything_parts_are_refused_where_th
     _, place = farthest(motion, coupler, 1.0)
     assert checked([coupler, post_beyond(place, 1.0, 3.0)], motion).pairs[0].gap > 2.5e-3
     with pytest.raises(
-        UserError, match=r"between two samples of data\.json they may be .* mm from .*solve with more steps"
+        UserError, match=r"between two samples of data\.json they may be .* mm off.*Solve with more steps"
     ):
         checked([coupler, post_beyond(place, 1.0, 0.2)], motion)
 

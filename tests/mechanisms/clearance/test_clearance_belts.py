@@ -94,7 +94,7 @@ def test_all_that_the_film_draws_is_in_the_band(crossed: bool, teeth: tuple[int,
                 assert (disc_there - shadow).area() < 2e-3 * disc_there.area()
 
 
-def test_what_keeps_out_of_the_way_passes() -> None:
+def test_pieces_clear_of_the_belt_pass() -> None:
     """Its own pulleys, a post between the strands, a bar over the belt; and the belt is one of what is compared."""
     motion = solved(drive(turn=0.0), "a", "b")
     inside, over = (
@@ -109,7 +109,7 @@ def test_what_keeps_out_of_the_way_passes() -> None:
 
 @pytest.mark.parametrize("crossed", [False, True])
 def test_a_post_in_a_strand_is_refused(crossed: bool) -> None:
-    """Of an open belt the upper strand, of a crossed one where the strands cross."""
+    """The post is in the upper strand of an open belt, and where the strands of a crossed one cross."""
     motion = solved(drive(crossed, turn=0.0), "a", "b")
     lean = math.asin(20 / 120)  # upper tangent of an open belt: 30 mm over the line at its middle
     at = (10 + 120 * 20 / 60, 20.0) if crossed else (10 + 60, 20.0 + 30 / math.cos(lean) + 0.9)

@@ -40,14 +40,14 @@ def _joined(*pieces: MeshPiece) -> MeshPiece:
     from functools import reduce
 
     solid = reduce(lambda a, b: a + b, (piece.manifold for piece in pieces))
-    return _of(pieces[0], solid)
+    return _mesh_piece(pieces[0], solid)
 
 
 def _less(piece: MeshPiece, other: MeshPiece) -> MeshPiece:
-    return _of(piece, piece.manifold - other.manifold)
+    return _mesh_piece(piece, piece.manifold - other.manifold)
 
 
-def _of(piece: MeshPiece, solid: object) -> MeshPiece:
+def _mesh_piece(piece: MeshPiece, solid: object) -> MeshPiece:
     mesh = solid.to_mesh64()  # pyright: ignore[reportAttributeAccessIssue]
     return MeshPiece(piece.body, piece.name, np.asarray(mesh.vert_properties)[np.asarray(mesh.tri_verts)])
 
@@ -106,7 +106,7 @@ def test_distance_of_segments_is_that_of_their_points(ends: list[tuple[float, fl
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_what_outlines_tell_is_what_the_meshes_tell(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_gaps_of_outlines_are_those_of_the_meshes(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Stars and bored plates that turn beside each other: the same gap as the facets give, proven as sharply."""
     rng = np.random.default_rng(seed)
     reach = rng.uniform(8, 14)
@@ -209,7 +209,7 @@ def test_a_block_that_is_too_wide_is_caught() -> None:
         checked(walls(0.03, 0.4), slider(0.4))
 
 
-def test_what_stands_in_the_way_is_left_to_the_motion() -> None:
+def test_pieces_in_the_way_are_left_to_the_motion() -> None:
     """A post behind the block at its outer end: seen along the line they overlap, in the motion they stay apart."""
     motion = slider(0.0)
     post = disc("ground", "post", 115.0, 0.0, 4.0, -5.0, 15.0)
@@ -222,7 +222,7 @@ def test_what_stands_in_the_way_is_left_to_the_motion() -> None:
 
 @pytest.mark.parametrize(("end", "proof", "gap"), [(17.0, "slide", 0.12), (3.0, "slide", 0.12), (0.08, "motion", 0.08)])
 @pytest.mark.parametrize("angle", [0.0, 0.7])
-def test_what_is_out_of_reach_along_the_line_is_left_out(end: float, proof: str, gap: float, angle: float) -> None:
+def test_pieces_out_of_reach_along_the_line_are_left_out(end: float, proof: str, gap: float, angle: float) -> None:
     """A cylinder with a closed end, ``end`` mm from where the block turns back."""
     block, wall, _ = walls(0.12, angle)
     stop = turned(box("ground", "end", 108.0 + end + 2.5, 0.0, -5.0, (5.0, 18.0, 20.0)), angle)

@@ -125,7 +125,7 @@ class Moment:
         return places
 
     def _slotted(self, places: dict[str, Array]) -> None:
-        """What slides between a guide and a pin: where the pin is, turned as the guide."""
+        """Add the place of a slider between a guide and a pin: that of the pin, turned as the guide."""
         pairs = ((a.partition(".")[0], b.partition(".")[0]) for a, b in self.file.connections if a.endswith("frame_b"))
         for guide, pin in pairs:
             kinds = [self.file.components[name].kind for name in (guide, pin)]
@@ -148,7 +148,7 @@ class Moment:
             assert places.setdefault(there, moved) == pytest_approx(moved), (here, there)
 
     def forces(self) -> tuple[float, int, int, int]:
-        """Of the balance of forces: largest residual, numbers of equations and unknowns, rank."""
+        """Return the balance of forces: largest residual, numbers of equations and unknowns, rank."""
         unknowns = [f"{frame}.{flow}" for frame in self.file.frames for flow in FLOWS]
         for c in self.file.components.values():
             if c.kind in self.file.classes:

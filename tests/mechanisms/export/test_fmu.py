@@ -42,13 +42,13 @@ def unit(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., str]:
     """The file of a mechanism's unit."""
     folder = tmp_path_factory.mktemp("units")
 
-    def made(m: Mechanism, duration: float = 1.0, steps: int = 50) -> str:
+    def write(m: Mechanism, duration: float = 1.0, steps: int = 50) -> str:
         content, _ = fmu(m.simulate(duration, steps=steps, tolerance=1e-9))
         path = folder / f"{m.name}{len(list(folder.iterdir()))}.fmu"
         path.write_bytes(content)
         return str(path)
 
-    return made
+    return write
 
 
 def outputs(path: str) -> list[str]:
@@ -230,7 +230,7 @@ def test_a_step_may_end_early_where_a_contact_begins(unit: Any) -> None:
         assert unit_at_end.get("ball.y", "ball.vy") == pytest.approx([ball.y[-1], ball.vy[-1]], abs=1e-6)
 
 
-def test_what_cannot_be_is_refused_in_words(unit: Any) -> None:
+def test_invalid_models_are_refused_in_words(unit: Any) -> None:
     path, said = unit(four_bar()), []
     description = fmpy.read_model_description(path)
     identifier = description.coSimulation.modelIdentifier
@@ -320,7 +320,7 @@ def test_a_program_in_c_runs_it_without_python(unit: Any, tmp_path: Path) -> Non
     assert float(done.stdout) == pytest.approx(theta, abs=1e-7)
 
 
-def test_what_needs_python_is_refused_by_name() -> None:
+def test_functions_in_python_are_refused_by_name() -> None:
     stopped = Mechanism("door")
     leaf = stopped.bar("leaf", 0.5, mass=1.0)
     stopped.revolute("hinge", stopped.ground.origin, leaf.start, limits=(-0.5, 3.0))

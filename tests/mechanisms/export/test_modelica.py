@@ -166,7 +166,7 @@ def _start(text: str) -> float:
 
 
 def test_a_wrong_number_is_noticed() -> None:
-    """Of the check above: a mass or a sign that is another."""
+    """The check above notices another mass or another sign."""
     sol = double_pendulum()
     text, _ = modelica(sol)
     for right, wrong in (("m=0.4", "m=0.5"), ("frame_b.fx = -f*", "frame_b.fx = f*"), ("c=0.1", "c=0.2")):
@@ -192,7 +192,7 @@ def test_names_are_identifiers_each_once() -> None:
     assert names.new("MasslessRod") == "MasslessRod_2"
 
 
-def test_what_cannot_be_said_is_named_and_what_repeats_is_left_out() -> None:
+def test_features_without_words_are_named_and_repeats_are_left_out() -> None:
     m = Mechanism("three planets")
     sun, arm = m.body("sun", mass=0.2, inertia=1e-4), m.body("arm", mass=0.2, inertia=1e-4)
     m.revolute("S", m.ground.at(0, 0), sun.origin)

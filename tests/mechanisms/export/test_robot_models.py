@@ -162,7 +162,7 @@ def test_mujoco_moves_it_the_same(name: str) -> None:
     assert worst < most * size
 
 
-def test_what_cannot_be_said_is_named() -> None:
+def test_features_that_cannot_be_exported_are_named() -> None:
     m = Mechanism("rack")
     pinion, rack = m.body("pinion", mass=1.0, inertia=1e-3), m.body("rack", mass=1.0, inertia=1e-3)
     m.revolute("A", m.ground.at(0, 0.02), pinion.origin)

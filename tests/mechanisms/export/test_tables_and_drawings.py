@@ -118,7 +118,7 @@ def test_texts_are_no_formulas_and_numbers_stay(names: list[str], rows: list[tup
 
 
 @pytest.mark.parametrize("word", ["=1+1", "+crank", "-rod", "@sum", "\tcrank", "-1+1|cmd"])
-def test_what_would_be_a_formula_has_an_apostrophe(word: str) -> None:
+def test_words_like_a_formula_have_an_apostrophe(word: str) -> None:
     assert _read(csv_text(["name"], [[word]])) == [["name"], [f"'{word}"]]
 
 

@@ -16,9 +16,6 @@ from mechanisms.hip_thrust import mechanism as thrust
 from mechanisms.hip_thrust.parts import GAP
 from mechanisms.inverse_slider_crank import mechanism as inverse
 from mechanisms.jansen_leg import mechanism as jansen
-from mechanisms.pantograph import mechanism as pantograph
-from mechanisms.peaucellier import mechanism as peaucellier
-from mechanisms.quick_return import mechanism as shaper
 from mechanisms.scissor_lift import mechanism as lift
 from mechanisms.slider_crank import mechanism as slider_crank
 from mechanisms.stages.solve import stage as solve_stage
@@ -31,19 +28,6 @@ from shared.shapes.mannequin import torso
 from shared.shapes.units import mm
 
 # Linkages of the gallery against their closed forms and published numbers, at the sizes their folders have.
-
-
-@pytest.mark.parametrize("offset", [0.0, slider_crank.VARIANTS["offset"]["offset"]])
-def test_slider_crank(offset: float) -> None:
-    p = slider_crank.Params(offset=offset)
-    sol = slider_crank.build(p).sweep()
-    turn = p.speed * sol.t
-    lean = np.arcsin((offset - p.crank * np.sin(turn)) / p.rod)
-    rate = -p.crank * p.speed * np.cos(turn) / (p.rod * np.cos(lean))
-    slider = sol.body("slider")
-    np.testing.assert_allclose(slider.x, p.crank * np.cos(turn) + p.rod * np.cos(lean), atol=1e-14)
-    vx = -p.crank * p.speed * np.sin(turn) - p.rod * rate * np.sin(lean)
-    np.testing.assert_allclose(slider.vx, vx, atol=1e-13)
 
 
 def test_gravity_costs_the_motor_the_weight_of_crank_and_rod() -> None:
@@ -89,20 +73,6 @@ def test_bicycle_knee_stays_between_the_dead_points_of_its_crank() -> None:
     assert np.degrees(angle.min()) == pytest.approx(math.degrees(dead(p.shank - p.crank)), abs=1e-4)
 
 
-def test_quick_return() -> None:
-    p = shaper.Params()
-    sol = shaper.build(p).sweep(steps=3600)
-    crank = sol.body("crank").theta
-    x, y = p.crank * np.cos(crank), p.height + p.crank * np.sin(crank)
-    arm = np.arctan2(y, x)
-    np.testing.assert_allclose(sol.body("arm").theta, arm, atol=1e-13)
-    rise = p.ram - p.arm * np.sin(arm)
-    np.testing.assert_allclose(sol.body("ram").x, p.arm * np.cos(arm) + np.sqrt(p.link**2 - rise**2), atol=1e-13)
-    swing = math.asin(p.crank / p.height)
-    cutting = np.mean(sol.body("arm").omega[:-1] > 0)
-    assert cutting / (1 - cutting) == pytest.approx((math.pi + 2 * swing) / (math.pi - 2 * swing), rel=2e-3)
-
-
 def test_jansen_leg_by_circles() -> None:
     """Each joint from two others, as one draws it by compass; a foot that is nearly flat for half of the turn."""
     p = jansen.Params()
@@ -137,22 +107,6 @@ def test_wipers_stay_parallel_and_swing_as_the_dead_points_of_the_motor_say() ->
 
 
 # Linkages of the gallery that draw, enlarged or straight, and lift, against their closed forms.
-
-
-def test_pantograph_enlarges_place_speed_and_acceleration() -> None:
-    p = pantograph.Params()
-    sol = pantograph.build(p).sweep()
-    drawn, copy = sol.point("drawn"), sol.point("copy")
-    assert np.ptp(drawn.x) == pytest.approx(32 * p.size, rel=1e-3)
-    for field, close in (("x", 1e-14), ("y", 1e-14), ("vx", 1e-11), ("vy", 1e-11), ("ax", 1e-9), ("ay", 1e-9)):
-        np.testing.assert_allclose(getattr(copy, field), p.scale * getattr(drawn, field), atol=close)
-
-
-def test_peaucellier_draws_a_straight_line() -> None:
-    p = peaucellier.Params()
-    pen = peaucellier.build(p).sweep().point("P")
-    np.testing.assert_allclose(pen.x, (p.long**2 - p.side**2) / (2 * p.crank), rtol=1e-12)
-    assert np.ptp(pen.y) > p.long / 2
 
 
 def test_scissor_lift() -> None:

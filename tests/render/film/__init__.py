@@ -1,1 +1,1 @@
-"""What is in the picture."""
+"""Tests of the content of pictures."""

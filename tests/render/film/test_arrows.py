@@ -38,7 +38,6 @@ from render.film.vectors import (
 from render.frames import still
 from render.presets import ASPECT, WORDS, Preset, show_words
 from shared.contract import Action, Acts, DriverMotion, ForceMotion, Motion
-from shared.contract.quantity import written
 from shared.contract.shot import Quantity, Shot, Title, shown
 from shared.contract.signals import SIGNALS, rgb
 from shared.stage.errors import UserError
@@ -122,7 +121,7 @@ def test_a_short_peak_is_cut_and_the_legend_says_so():
 
 
 def test_blows_that_return_leave_the_rest_to_be_seen():
-    """Of a hammer that strikes in 6 % of the time with ten times the force of its spring."""
+    """A hammer strikes in 6 % of the time with ten times the force of its spring."""
     blows = np.where(TIME * 100 % 17 < 1, 100.0, 10.0)
     assert Arrows(TIME, [steady(blows)], size=1.0).scales["N"].largest == pytest.approx(10.0)
     assert Arrows(TIME, [steady(blows)], size=1.0).legend(1.0)[0].words == "forces, peaks cut"
@@ -147,17 +146,6 @@ def test_forces_and_reactions_share_one_scale_and_nothing_has_none():
 )
 def test_round_numbers(value: float, below: float):
     assert round_below(value) == pytest.approx(below)
-
-
-@pytest.mark.parametrize(
-    ("value", "unit", "said"),
-    [
-        (0.5, "N", "500 mN"), (20.0, "N", "20 N"), (5e3, "N", "5 kN"), (0.02, "N", "20 mN"), (2e-6, "N", "2 µN"),
-        (0.2, "m/s", "200 mm/s"), (0.05, "m/s", "50 mm/s"), (2000.0, "m/s²", "2000 m/s²"),
-    ],
-)  # fmt: skip
-def test_numbers_of_the_legend(value: float, unit: str, said: str):
-    assert written(value, unit) == said
 
 
 def test_short_arrows_shrink_as_a_whole_and_no_shaft_is_longer_than_its_arrow():

@@ -22,7 +22,6 @@ from render.report.travel import releases
 from shared.contract import Held, Motion
 from shared.contract.geometry import BeltPath
 from shared.stage.errors import UserError
-from tests.shared.shape_checks import checked
 from tools.models.outlines import inside
 
 RADII = st.floats(0.01, 0.1)
@@ -143,20 +142,6 @@ def test_rollers_of_a_chain_lie_in_the_seats_of_both_sprockets() -> None:
             assert np.abs(miss).max() < 1e-6
             seen += int(on.sum())
     assert seen > 60
-
-
-def test_pulleys_share_a_layer_and_are_sound() -> None:
-    for teeth in (None, (16, 32)):
-        m = drive(teeth=teeth)
-        made = Automatic(m, m.sweep(steps=24))
-        assert made.levels["a"] == made.levels["b"]
-        for name, body in (("rim_belt_a", "a"), ("rim_belt_b", "b")):
-            solid = next(solid for solid in made.solids(engraved_too=False)[body] if solid.name == name)
-            checked(solid.shape, 1)
-            (hold,) = solid.holds
-            assert hold.force == "belt"
-            low, high = made.span(body)
-            assert low < hold.z - hold.radius < hold.z + hold.radius < high
 
 
 def test_strands_keep_their_layer_free() -> None:

@@ -64,7 +64,7 @@ def test_the_rate_is_said(seconds: float, said: str) -> None:
 
 
 @given(st.floats(0.01, 100.0), st.integers(1, 60), st.floats(0.0, 3.0))
-def test_what_does_not_repeat_plays_forwards_holds_and_begins_anew(seconds: float, fps: int, hold: float) -> None:
+def test_a_motion_without_a_period_plays_holds_and_begins_anew(seconds: float, fps: int, hold: float) -> None:
     motion = once(seconds)
     clock = Clock(motion, Shot(fps=fps, hold=hold))
     times = np.array([clock.moment(frame).time for frame in range(clock.frames)])

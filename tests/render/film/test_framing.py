@@ -49,7 +49,7 @@ def test_all_points_are_inside_the_margin_and_two_sides_touch_it(
     assert any(touching) or nearest == pytest.approx(NEAREST * np.linalg.norm(np.ptp(points, axis=0)))
 
 
-def test_what_is_right_up_and_near_lands_right_up():
+def test_points_right_up_and_near_land_right_up():
     camera = CameraPose(position=(0.0, -1.0, 0.0), azimuth=0.0, elevation=0.0, lens=SENSOR / 2, focus=1.0, fstop=0.0)
     assert project(camera, np.array([[0.0, 0.0, 0.0]]), 160, 90)[0] == pytest.approx([80, 45])
     assert project(camera, np.array([[0.5, 0.0, 0.25]]), 160, 90)[0] == pytest.approx([120, 25])
@@ -179,7 +179,7 @@ def along(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return BOX + np.stack([x, y, 0 * x], axis=1)[:, None]
 
 
-def test_what_travels_and_what_does_not():
+def test_travelling_mechanisms_are_told_from_others():
     still = 0 * TIME
     car, slow = along(3 * TIME, still), along(0.1 * TIME, still)
     thrown = along(2 * TIME, 4 * TIME * (1 - TIME))

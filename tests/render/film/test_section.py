@@ -52,11 +52,14 @@ print("SEEN", json.dumps({
 
 
 RING = 32 * 0.09801714032956060 * (0.02**2 - 0.01**2)
-"""Of the tube, a polygon of 64 sides: 64 / 2 sin(2 pi / 64) (R^2 - r^2)."""
+"""Volume of the tube, a polygon of 64 sides: 64 / 2 sin(2 pi / 64) (R^2 - r^2)."""
 
 
 def tube(*planes: tuple[float, float, float, float]) -> dict[str, Any]:
-    """What Blender leaves of a tube along z, 40 mm long, of radii 10 and 20 mm about the origin."""
+    """Return the part that Blender leaves of a tube along z, 40 mm long, of radii 10 and 20 mm.
+
+    It stands about the origin.
+    """
     command = [sys.executable, "-c", CUT, json.dumps(planes)]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[-2000:]
@@ -215,7 +218,7 @@ def test_the_page_has_the_planes_of_each_piece_that_the_film_cuts(out_root: Path
     assert not solid(Film(motion, parts, Shot(section=0.4), out.parts_folder))["sawn"]
 
 
-def test_what_a_section_names_is_there_and_sides_fit_together(tmp_path: Path, out_root: Path) -> None:
+def test_named_pieces_of_a_section_exist_and_sides_fit_together(tmp_path: Path, out_root: Path) -> None:
     out = film_fixture.write()
     motion, parts = read_motion(out.motion), read_parts(out.parts)
     for shot, words in (

@@ -110,7 +110,7 @@ def test_planes_are_parts_of_the_whole_motion_and_all_bodies_are_cut(out_root: P
     assert places.pop() == pytest.approx(max(reach) - 0.3 * np.ptp(reach), abs=1e-4)
 
 
-def test_what_moves_along_a_plane_or_is_cut_from_the_front_is_cut_once(out_root: Path) -> None:
+def test_pieces_along_a_plane_or_cut_from_the_front_are_cut_once(out_root: Path) -> None:
     out = film_fixture.write()
     assert not any(cut.fixed for cut in cuts(out, Section(front=0.4, fixed=True)).values())
     parts, motion = read_parts(out.parts), read_motion(out.motion)
@@ -196,12 +196,12 @@ def filmed(section: Section | float) -> Film:
 
 
 def volume(shape: Tube) -> float:
-    """Of what a tube encloses (m^3), by the divergence theorem."""
+    """Return the volume within a tube (m^3), by the divergence theorem."""
     a, b, c = np.moveaxis(shape[0][shape[2].reshape(-1, 3)], 1, 0)
     return float((a * np.cross(b, c)).sum() / 6)
 
 
-def test_what_hangs_between_bodies_is_cut_where_all_that_moves_is(out_root: Path) -> None:
+def test_springs_and_ropes_are_cut_where_everything_that_moves_is(out_root: Path) -> None:
     whole, front = filmed(0.0), filmed(0.3)
     assert not whole.cut
     [(x, y, z, place)] = front.cut

@@ -184,13 +184,13 @@ def with_spring(motion: Motion, bodies: tuple[str, str] = ("ground", "rocker"), 
     return msgspec.structs.replace(motion, forces={"spring": force})
 
 
-def made(motion: Motion, site: Site | None = SITE) -> list[Spiral]:
+def spirals_of(motion: Motion, site: Site | None = SITE) -> list[Spiral]:
     return list(spirals(motion, 0.3, lambda bodies, places, radius: site))
 
 
 def test_its_ends_stay_on_the_stud_and_at_the_hub_and_it_turns_as_the_bodies_do():
     motion = with_spring(four_bar_motion())
-    [spring] = made(motion)
+    [spring] = spirals_of(motion)
     poses = Poses(motion)
     for time in (0.0, 0.31, 0.77):
         at = Moment(time, 0)
@@ -217,7 +217,7 @@ def test_its_turns_never_touch_however_far_it_is_wound(start: float, swing: floa
     theta = start + swing * np.linspace(0, 1, len(motion.time))
     rocker = msgspec.structs.replace(motion.bodies["rocker"], theta=theta.tolist())
     motion = msgspec.structs.replace(motion, bodies=motion.bodies | {"rocker": rocker})
-    [spring] = made(motion)
+    [spring] = spirals_of(motion)
     for turned in (theta[0], theta[-1]):
         turns = spring.turns - turned / math.tau
         assert turns >= 1.5 - 1e-9
@@ -227,12 +227,12 @@ def test_its_turns_never_touch_however_far_it_is_wound(start: float, swing: floa
 
 def test_there_is_none_without_stiffness_without_a_pin_and_without_room():
     motion = four_bar_motion()
-    assert made(with_spring(motion, stiff=False)) == []
-    assert made(with_spring(motion, ("ground", "coupler"))) == []  # no pin holds these two together
-    assert made(with_spring(motion), site=None) == []
+    assert spirals_of(with_spring(motion, stiff=False)) == []
+    assert spirals_of(with_spring(motion, ("ground", "coupler"))) == []  # no pin holds these two together
+    assert spirals_of(with_spring(motion), site=None) == []
     off = with_spring(motion, ("crank", "rocker"))
     assert np.abs(moved(off, "crank", (0.12, 0.0, 0.0))[0] - moved(off, "rocker", (0.0, 0.0, 0.0))[0]).max() > 0.01
-    assert made(off) == []
+    assert spirals_of(off) == []
 
 
 def test_in_a_film_it_lies_over_all_that_passes_and_in_the_picture(out_root: Path):

@@ -1,4 +1,4 @@
-"""What is written over the pictures of a film: titles, numbers that live, legends; and the room that they need."""
+"""Words over the pictures of a film: titles, live numbers, legends; and the room that they need."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ def test_words_and_legend_neither_overlap_nor_leave_a_picture_of_any_shape(
 
 
 def contrast(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Of WCAG 2.2, between sRGB colours (..., 3), 0..255."""
+    """Return the contrast of WCAG 2.2 between sRGB colours (..., 3), 0..255."""
 
     def luminance(colour: np.ndarray) -> np.ndarray:
         part = np.asarray(colour) / 255
@@ -162,7 +162,7 @@ def contrast(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 BEHIND = [(0, 0, 0), (255, 255, 255), (128, 128, 128), (255, 142, 62), (60, 120, 230)]
-"""What may be behind words: the darkest, the brightest, what lies between, a trail, an anodised part."""
+"""Colours that may be behind words: the darkest, the brightest, two between, a trail, an anodised part."""
 
 
 @pytest.mark.parametrize("behind", BEHIND)

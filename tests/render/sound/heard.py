@@ -19,7 +19,7 @@ from shared.contract import BodyParts, Mass, Motion, Mount, Piece
 from shared.contract.shot import Shot
 
 SIZE = 0.2
-"""Of every machine here (m)."""
+"""Size of every machine here (m)."""
 
 
 def bar(length: float = 0.12, width: float = 0.016, height: float = 0.008, material: str = "steel") -> BodyParts:
@@ -36,7 +36,7 @@ def bar(length: float = 0.12, width: float = 0.016, height: float = 0.008, mater
 
 
 def filmed(motion: Motion | Solution, shot: Shot | None = None) -> Any:
-    """What the sound asks of a film; every body, and ground, is a bar of steel."""
+    """Return the film as the sound needs it; every body, and ground, is a bar of steel."""
     if not isinstance(motion, Motion):
         motion = to_motion(motion, None, "0" * 64, {})
     shot = shot or Shot()

@@ -96,7 +96,7 @@ def test_noise_has_the_rms_one_by_its_spectrum(count: int, stream: int) -> None:
     assert np.sqrt((shaped(count, stream, frequencies(count) ** -0.5) ** 2).mean()) == pytest.approx(1.0, rel=1e-12)
 
 
-def test_what_changes_slowly_is_straight_between_its_values() -> None:
+def test_slow_changes_are_straight_between_their_values() -> None:
     desk = Desk(Setting(filmed(gears(), Shot(seconds_per_turn=0.37, fps=24))))
     values = np.random.default_rng(1).normal(size=desk.setting.steps + 1)
     samples = np.arange(desk.setting.samples) / desk.setting.samples * desk.setting.steps

@@ -54,7 +54,7 @@ def test_each_tooth_passes_once() -> None:
         assert np.ptp(np.diff(passed)) < 1e-6
 
 
-def test_what_a_shot_silences_is_not_heard() -> None:
+def test_silenced_sources_are_not_heard() -> None:
     heard = stems_of(Setting(filmed(gears())))
     assert {"mesh", "motors", "friction"} <= set(heard)
     silent = stems_of(Setting(filmed(gears(), Shot(sound=Sound(silent=("motor", "mesh", "A", "B", "load"))))))

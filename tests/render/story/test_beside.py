@@ -120,7 +120,7 @@ def test_a_name_means_the_machine_and_a_variant() -> None:
         comparison.both("four_bar")
 
 
-def test_what_is_missing_is_named(out_root) -> None:
+def test_missing_things_are_named(out_root) -> None:
     film_fixture.write(name=NAMES[0])
     with pytest.raises(UserError, match="v_twin-bank_45"):
         comparison.run("v_twin", PRESETS["draft"])

@@ -24,13 +24,13 @@ from shared.stage.errors import UserError
 from tools.fixtures import film_fixture
 
 
-def made(wishes: Wishes | None = None, preset: str = "draft", loop: float = 0.0, **shot) -> Telling:
+def tell(wishes: Wishes | None = None, preset: str = "draft", loop: float = 0.0, **shot) -> Telling:
     out = film_fixture.write(Shot(story=wishes or Wishes(), **shot))
     return telling_of(out, preset_named(preset), "", loop)
 
 
 def check(telling: Telling) -> Story:
-    """What holds for every story: time is monotone within a shot, with the rate that is written over the picture."""
+    """Check a story: time is monotone within a shot, with the rate that is written over the picture."""
     story = telling.story
     for placed in story.placed:
         seconds = np.arange(placed.end - placed.first) / story.fps
@@ -55,17 +55,17 @@ def _lifts(telling: Telling):
 
 
 def test_it_has_all_shots_and_costs_little_more_than_the_loop(out_root) -> None:
-    telling = made()
+    telling = tell()
     story = check(telling)
     assert [placed.shot.name for placed in story.placed] == [name for name in STORY_SHOTS if name != "section"]
     assert 20 <= story.seconds <= 40
     assert story.step == 2
     assert len(story.pictures) <= 2.5 * telling.film.clock.frames
-    assert made(preset="final").story.step == 1
+    assert tell(preset="final").story.step == 1
 
 
 def test_time_stops_at_the_dead_point_and_says_so(out_root) -> None:
-    telling = made()
+    telling = tell()
     story = telling.story
     placed = next(placed for placed in story.placed if placed.shot.name == "reason")
     caption = placed.shot.captions[0]
@@ -82,7 +82,7 @@ def test_time_stops_at_the_dead_point_and_says_so(out_root) -> None:
 
 
 def test_sound_follows_the_times_of_the_story(out_root) -> None:
-    telling = made()
+    telling = tell()
     story, clock = telling.story, telling.film.clock
     heard = story.time_map(clock.start, clock.end)
     assert heard.seconds == pytest.approx(story.seconds)
@@ -102,7 +102,7 @@ def test_sound_follows_the_times_of_the_story(out_root) -> None:
 
 def test_sound_of_a_motion_that_ends_stands_where_the_picture_does(out_root) -> None:
     """Also past the end, where what follows an event would go beyond it: there the picture is held."""
-    telling = made()
+    telling = tell()
     motion = telling.film.motion
     motion.period = None
     film = Film(motion, telling.film.parts, telling.film.shot, telling.film.folder, 16 / 9)
@@ -132,7 +132,7 @@ def rocker_time(telling: Telling) -> float:
 
 def test_words_and_numbers_of_the_picture_agree_with_its_time(out_root) -> None:
     """The rate that is written is the slope of the time of the motion; the playhead stands where the picture is."""
-    telling = made()
+    telling = tell()
     story = telling.story
     placed = next(placed for placed in story.placed if placed.shot.name == "motion")
     frame = placed.first + 40
@@ -145,19 +145,19 @@ def test_words_and_numbers_of_the_picture_agree_with_its_time(out_root) -> None:
 
 def test_an_assembly_comes_together_as_it_came_apart(out_root) -> None:
     """So that it costs half: every picture of the way back is one of the way out."""
-    story = made().story
+    story = tell().story
     placed = next(placed for placed in story.placed if placed.shot.name == "assembly")
     pictures = [story.picture(frame) for frame in range(placed.first, placed.end)]
     middle = len(pictures) // 2
     assert pictures[0].lifts == pictures[-1].lifts == ()
     assert set(pictures[middle:]) <= set(pictures[:middle])
-    assert {name for name, _ in pictures[middle].lifts} == {lift.name for lift in _lifts(made()) if lift.distance}
+    assert {name for name, _ in pictures[middle].lifts} == {lift.name for lift in _lifts(tell()) if lift.distance}
     names = [leader.words for leader in story.over(placed.first + middle).leaders]
     assert sorted(names) == ["coupler", "crank", "frame", "rocker"]
 
 
 def test_all_pieces_are_in_the_picture_while_they_come_apart(out_root) -> None:
-    telling = made(camera=Camera(lens=90.0))
+    telling = tell(camera=Camera(lens=90.0))
     film, preset = telling.film, PRESETS["draft"]
     scenery = scenery_of(film, telling.forces, reasons(film.motion), preset)
     (placed,) = (each for each in telling.story.placed if each.shot.name == "assembly")
@@ -171,7 +171,7 @@ def test_all_pieces_are_in_the_picture_while_they_come_apart(out_root) -> None:
 
 
 def test_a_shot_with_a_section_has_a_shot_of_it(out_root) -> None:
-    telling = made(section=Section(right=0.5), preset="final")
+    telling = tell(section=Section(right=0.5), preset="final")
     story, cut = check(telling), telling.cut
     assert [placed.shot.name for placed in story.placed] == list(STORY_SHOTS)
     (placed,) = (each for each in story.placed if each.shot.name == "section")
@@ -188,13 +188,13 @@ def test_a_shot_with_a_section_has_a_shot_of_it(out_root) -> None:
         {telling.row(k, PRESETS["final"]) for k in range(story.total)}
     )
     with pytest.raises(UserError, match=r"shots has a section, and shot\.section cuts nothing open"):
-        made(Wishes(shots=("section", "last")))
+        tell(Wishes(shots=("section", "last")))
     with pytest.raises(UserError, match=r"shot\.section = front=0\.5 cuts no piece open"):
-        made(section=Section(front=0.5, only=("ground/base", "coupler/coupler")))
+        tell(section=Section(front=0.5, only=("ground/base", "coupler/coupler")))
 
 
-def test_what_time_stops_for_is_in_the_strip_before_the_joint_that_carries_most(out_root) -> None:
-    motion = made().film.motion
+def test_the_reason_for_the_stop_comes_before_the_most_loaded_joint(out_root) -> None:
+    motion = tell().film.motion
     both = [Reason(0.5, "reaction", "C", joint="B"), Reason(0.1, "reaction", "B", joint="B")]
     named = [curve.name for curve in curves_of(motion, None, both)]
     assert named[0] == "C", "B has the same unit"
@@ -202,11 +202,11 @@ def test_what_time_stops_for_is_in_the_strip_before_the_joint_that_carries_most(
 
 
 def test_a_shot_says_otherwise_in_a_few_lines(out_root) -> None:
-    story = made(Wishes(shots=("motion", "reason"), event="B", caption="Look here", curves=("P",), language="de")).story
+    story = tell(Wishes(shots=("motion", "reason"), event="B", caption="Look here", curves=("P",), language="de")).story
     assert [placed.shot.chapter for placed in story.placed] == ["Bewegung", "Warum"]
     assert story.captions[-1].text == "Look here"
     assert [curve.name for curve in story.curves] == ["P"]
-    assert made(Wishes(curves=())).drawing.strip is None
+    assert tell(Wishes(curves=())).drawing.strip is None
 
 
 @pytest.mark.parametrize(
@@ -227,9 +227,9 @@ def test_a_shot_says_otherwise_in_a_few_lines(out_root) -> None:
         (Wishes(language="xx"), r"language is 'xx'"),
     ],
 )  # fmt: skip
-def test_what_cannot_be_is_refused_with_place_and_remedy(out_root, wishes: Wishes, message: str) -> None:
+def test_invalid_stories_are_refused_with_place_and_remedy(out_root, wishes: Wishes, message: str) -> None:
     with pytest.raises(UserError, match=message):
-        made(wishes)
+        tell(wishes)
 
 
 def test_kinds_of_films_are_known(out_root) -> None:
@@ -243,7 +243,7 @@ def test_kinds_of_films_are_known(out_root) -> None:
 
 @pytest.mark.parametrize("seconds", [4.0, 12.0, 33.3])
 def test_a_loop_ends_as_it_begins(out_root, seconds: float) -> None:
-    telling = made(loop=seconds, preset="draft-9x16")
+    telling = tell(loop=seconds, preset="draft-9x16")
     story = check(telling)
     assert story.total == round(seconds * story.fps)
     turns = (story.shots[0].model(seconds) - story.shots[0].model(0.0)) / period_of(telling)
@@ -256,7 +256,7 @@ def test_a_loop_ends_as_it_begins(out_root, seconds: float) -> None:
 @pytest.mark.parametrize("part", [0.0, 0.03, 0.5, 0.995, 1.0])
 def test_a_loop_of_a_motion_that_ends_stops_at_its_event(out_root, part: float) -> None:
     """It shows all of the motion, and comes out of the dark and goes into it."""
-    telling = made()
+    telling = tell()
     motion = telling.film.motion
     motion.period = None
     film = Film(motion, telling.film.parts, telling.film.shot, telling.film.folder, 16 / 9)
@@ -277,7 +277,7 @@ def test_the_camera_stops_where_all_arrows_are_in_the_picture(out_root, monkeypa
     distances = []
     for tried in ((1.0,), (0.3, 1.0), (0.3,)):
         monkeypatch.setattr(reason, "NEARER", tried)
-        telling = made(Wishes(shots=("reason",)))
+        telling = tell(Wishes(shots=("reason",)))
         shot, film = telling.story.shots[0], telling.forces
         assert film is not None
         picture = shot.picture(reason.GOES + reason.SLOWS + reason.GROWS + 1.0)
@@ -315,7 +315,7 @@ def test_it_stops_at_the_event_and_begins_within_the_motion(event: float) -> Non
     assert ramp.rate(0.0) == pytest.approx(0.25 if event >= 0.5 else event / 2)
 
 
-def test_what_is_dull_goes_fast() -> None:
+def test_dull_parts_go_fast() -> None:
     time = np.linspace(0, 10, 101)
     happens = np.where((time > 4) & (time < 5), 1.0, 0.0)
     warp = warped(time.tolist(), happens, 0.0, 10.0, 6.0)

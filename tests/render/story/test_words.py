@@ -122,20 +122,20 @@ TALL = Mount(kind="stand", up=(1.0, 0.0, 0.0))
 """The four-bar stands on the left end of its base."""
 
 
-def made(mount: Mount | None = None, preset: str = "draft", wishes: Wishes | None = None, **shot) -> Telling:
+def tell(mount: Mount | None = None, preset: str = "draft", wishes: Wishes | None = None, **shot) -> Telling:
     asked = Shot(story=wishes or Wishes(), **shot)
     return telling_of(film_fixture.write(asked, mount=mount), preset_named(preset))
 
 
 def test_it_stands_beside_what_is_tall_in_a_wide_picture(out_root) -> None:
-    assert made(TALL).story.at_side
-    assert not made(camera=Camera(elevation=8.0)).story.at_side, "what lies is wide from so low"
-    assert not made(TALL, "draft-9x16").story.at_side
-    assert not made(TALL, wishes=Wishes(curves=())).story.at_side
+    assert tell(TALL).story.at_side
+    assert not tell(camera=Camera(elevation=8.0)).story.at_side, "what lies is wide from so low"
+    assert not tell(TALL, "draft-9x16").story.at_side
+    assert not tell(TALL, wishes=Wishes(curves=())).story.at_side
 
 
 def test_the_machine_has_the_rest_of_the_picture_and_is_larger_there(out_root, monkeypatch) -> None:
-    telling = made(TALL)
+    telling = tell(TALL)
     film, story = telling.film, telling.story
     wide = film.aspect - frame.SIDE
     heights = []
@@ -147,14 +147,14 @@ def test_the_machine_has_the_rest_of_the_picture_and_is_larger_there(out_root, m
             assert 0.0 <= y.min() <= y.max() <= 1 - frame.below(film.aspect, strip=False)
             heights.append(np.ptp(y))
     monkeypatch.setattr("render.film.story.scenery.WIDE", 9.0)
-    under = made(TALL)
+    under = tell(TALL)
     first = next(placed.first for placed in under.story.placed if placed.shot.name == "motion")
     y = project(under.story.picture(first).camera, film.subject.few, film.aspect, 1.0)[:, 1]
     assert max(heights) > 1.08 * np.ptp(y)
 
 
 def test_panels_stand_over_each_other_at_the_right_edge_clear_of_captions(out_root) -> None:
-    telling = made(TALL)
+    telling = tell(TALL)
     strip = telling.drawing.strip
     assert strip is not None
     assert strip.place == (640 - strip.across, 0)
@@ -184,7 +184,7 @@ def test_lines_break_between_facts() -> None:
     assert " ".join(broken) == long
 
 
-def test_what_is_slower_than_a_walk_has_no_km_h() -> None:
+def test_speeds_below_a_walk_have_no_km_h() -> None:
     assert without_slow("crank reaches 10.8 mm/s (0.0388 km/h)") == "crank reaches 10.8 mm/s"
     assert without_slow("ball reaches 4.43 m/s (15.9 km/h)") == "ball reaches 4.43 m/s (15.9 km/h)"
 

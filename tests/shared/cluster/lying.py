@@ -15,7 +15,7 @@ from mbsd.dealing.report import Report, encoded
 from shared.cluster.deal import perform
 
 
-def _done(keys: Sequence[str], content: Any = b"x") -> bytes:
+def _report(keys: Sequence[str], content: Any = b"x") -> bytes:
     return encoded(Report(done=[(key, content) for key in keys], seconds=0.001))
 
 
@@ -33,8 +33,8 @@ LIES = {
     "a dictionary": lambda keys: dict.fromkeys(keys, b"x"),
     "text": lambda keys: "all done",
     "no bytes": lambda keys: b"",
-    "a report cut short": lambda keys: _done(keys)[:-1],
-    "a report with a tail": lambda keys: _done(keys) + b"x",
+    "a report cut short": lambda keys: _report(keys)[:-1],
+    "a report with a tail": lambda keys: _report(keys) + b"x",
     "nested without end": lambda keys: (90_000).to_bytes(4, "big") + b"[" * 90_000,
     "another kind of report": lambda keys: _with_header({"code": "x"}),
     "no text": lambda keys: (2).to_bytes(4, "big") + b"\xff\xfe",
@@ -42,17 +42,17 @@ LIES = {
     "results of a negative length": lambda keys: _with_header(_header([[key, -1] for key in keys])),
     "results that are not there": lambda keys: _with_header(_header([[key, 8] for key in keys])),
     "a header of MessagePack": lambda keys: msgspec.msgpack.encode({"done": keys}),
-    "another order": lambda keys: _done(["another"]),
-    "an order of a folder above": lambda keys: _done(["../../x"]),
-    "an order twice": lambda keys: _done([*keys, *keys]),
-    "nothing": lambda keys: _done([]),
+    "another order": lambda keys: _report(["another"]),
+    "an order of a folder above": lambda keys: _report(["../../x"]),
+    "an order twice": lambda keys: _report([*keys, *keys]),
+    "nothing": lambda keys: _report([]),
     "a failure of another order": lambda keys: encoded(Report(failed=("another", "no"))),
     "a wish for other files": lambda keys: encoded(Report(lacking=["/etc/passwd"])),
     "a time that is none": lambda keys: encoded(Report(done=[(key, b"x") for key in keys], seconds=math.nan)),
     "time that ran backwards": lambda keys: encoded(Report(done=[(key, b"x") for key in keys], seconds=-1.0)),
-    "a large result": lambda keys: _done(keys, bytes(20_000)),
+    "a large result": lambda keys: _report(keys, bytes(20_000)),
     "endless data": lambda keys: bytes(3_000_000),
-    "a result that the reader refuses": lambda keys: _done(keys, b"rubbish"),
+    "a result that the reader refuses": lambda keys: _report(keys, b"rubbish"),
 }
 """By name, what a worker answers for these orders."""
 

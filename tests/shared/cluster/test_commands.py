@@ -6,8 +6,7 @@ import os
 import socket
 import subprocess
 import sys
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -19,7 +18,7 @@ from shared.cluster.address import address, connected, make
 from shared.cluster.deal import Contents, Deal, content_hash
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
-from tests.running.processes import ends_with_us
+from tests.running.processes import ends_with_us, until
 from tests.shared.cluster import acting
 
 HOST, OTHER_HOST = ("127.0.0.2", "127.0.0.3") if sys.platform == "linux" else ("127.0.0.1", "127.0.0.1")
@@ -45,13 +44,6 @@ def free_port() -> int:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return probe.getsockname()[1]
-
-
-def wait_until(ready: Callable[[], bool], seconds: float = 60.0) -> None:
-    end = time.monotonic() + seconds
-    while not ready():
-        assert time.monotonic() < end
-        time.sleep(0.1)
 
 
 def answers_at(port: int) -> bool:
@@ -92,7 +84,7 @@ def test_a_cluster_with_certificates_does_work_and_lets_nobody_else_in(
     with started("worker", f"tls://{HOST}:{port}", "--host", OTHER_HOST, log=tmp_path / "worker.log") as worker:
         for life in ("first", "second"):
             with started("scheduler", "--host", HOST, "--port", str(port), log=tmp_path / f"{life}.log") as scheduler:
-                wait_until(lambda: answers_at(port))
+                until(lambda: answers_at(port))
                 with connected() as client:
                     inputs = {name: lambda: content}
                     doubled = acting.work(acting.doubled)
@@ -125,7 +117,7 @@ def test_a_cluster_with_certificates_does_work_and_lets_nobody_else_in(
         ("tls://a:1", "CLUSTER_TLS"),
     ],
 )
-def test_what_is_no_address_is_refused(given: str, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_invalid_addresses_are_refused(given: str, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("CLUSTER_TLS", raising=False)
     monkeypatch.setenv("CLUSTER", given)
     with pytest.raises(UserError, match=said):

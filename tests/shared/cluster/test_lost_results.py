@@ -34,7 +34,7 @@ class Losing(FakeClient):
     """Two workers that do what they are asked; something happens to results of the first on their way."""
 
     def __init__(self, happens: Callable[[list[str]], None], times: int = 1) -> None:
-        super().__init__(dict.fromkeys(("losing", "keeping"), self._done), perform)
+        super().__init__(dict.fromkeys(("losing", "keeping"), self._report), perform)
         self.happens, self.left = happens, times
         self.did: Counter[str] = Counter()
         """How often each order was done."""
@@ -47,7 +47,7 @@ class Losing(FakeClient):
             future.fetched = lambda: self.happens(keys)
         return future
 
-    def _done(self, do: Any, common: str, needed: Any, orders: list[tuple[str, Any]], sent: Any) -> bytes:
+    def _report(self, do: Any, common: str, needed: Any, orders: list[tuple[str, Any]], sent: Any) -> bytes:
         time.sleep(0.01)
         self.did.update(key for key, _ in orders)
         return encoded(Report(done=[(key, key.encode()) for key, _ in orders], seconds=0.01))

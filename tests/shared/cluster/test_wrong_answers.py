@@ -12,7 +12,6 @@ import distributed
 import pytest
 
 from mbsd.dealing import deal, hand
-from mbsd.dealing.pools import Dask
 from mbsd.dealing.report import WrongAnswer, printable
 from shared.cluster.deal import Deal, Work, content_hash
 from shared.stage.errors import UserError
@@ -89,25 +88,6 @@ def test_where_all_lie_the_run_ends_with_their_names(
     assert time.monotonic() - began < 10.0
 
 
-def test_an_error_of_one_worker_is_no_reason_to_end(
-    client: distributed.Client, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """It fails each order that it gets, the same one three times, too; the other one does them all."""
-    monkeypatch.setattr(deal, "ATTEMPTS", 1)
-    failing, honest = workers(client)
-    answers = list(dealt(client, {"a": failing, "b": failing}, failing_on).results())
-    assert {worker for _, _, worker in answers} == {honest}
-
-
-def failing_on(files: Any, common: str, order: str) -> bytes:
-    from distributed import get_worker
-
-    time.sleep(0.05)
-    if get_worker().address == order:
-        raise UserError("no\x1b[2J" + "long " * 1000)
-    return b"done"
-
-
 def test_what_a_worker_says_is_printed_as_one_line_of_plain_text() -> None:
     assert printable("a\x1b[2Jb\nc\r\u202ed") == "a [2Jb c d"
     assert len(printable("x" * 10_000)) < 500
@@ -123,7 +103,7 @@ def test_a_worker_that_others_keep_busy_is_asked_at_once(
     assert all(future.done() for future in busy)
 
 
-def test_what_is_waited_for_is_told_soon(
+def test_the_reason_for_waiting_is_reported_soon(
     client: distributed.Client, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """The only worker that was fit has gone: it may come back, so it is waited for, and that is said."""
@@ -138,23 +118,3 @@ def test_what_is_waited_for_is_told_soon(
         list(work.results())
     assert time.monotonic() - began > 0.45
     assert "one is given 0.5 s to come (make worker)" in capsys.readouterr().err
-
-
-def test_a_result_that_never_comes_holds_up_nobody(client: distributed.Client, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Neither the answers of others nor the end: four of these did for a minute."""
-    slow, honest = workers(client)
-    submit = Dask.submit
-
-    def stuck(self: Dask, name: str, task: Any, arguments: Any, most: int, then: Any) -> Any:
-        def later(answer: Any) -> None:
-            if name == slow:
-                time.sleep(20.0)
-            then(answer)
-
-        return submit(self, name, task, arguments, most, later)
-
-    monkeypatch.setattr(Dask, "submit", stuck)
-    began = time.monotonic()
-    answers = list(dealt(client).results())
-    assert {worker for _, _, worker in answers} == {honest}
-    assert time.monotonic() - began < 10.0

@@ -262,7 +262,7 @@ def test_a_machine_that_is_not_there_is_refused_with_those_that_are(folder: Path
     assert mbsd("rnu", "arm", at=folder).returncode == 2
 
 
-def test_what_is_no_folder_or_has_two_of_a_name_is_refused(folder: Path) -> None:
+def test_missing_folders_and_double_names_are_refused(folder: Path) -> None:
     for place in ("nowhere", "wheel.py"):
         done = mbsd("-C", place, "list", at=folder)
         assert (done.returncode, f"{folder / place} is not a folder" in done.stderr) == (1, True)

@@ -70,7 +70,7 @@ SPATIAL = (SAMPLES / "piston.asmt").read_text()
         ("MarkerI", "MarkerK", "has no MarkerI"),
     ],
 )
-def test_what_is_spatial_or_damaged_is_refused_by_name(tmp_path: Path, old: str, new: str, said: str) -> None:
+def test_spatial_and_damaged_files_are_refused_by_name(tmp_path: Path, old: str, new: str, said: str) -> None:
     assert old in SPATIAL
     file = tmp_path / "a.asmt"
     file.write_text(SPATIAL.replace(old, new))
@@ -161,6 +161,6 @@ def test_functions_of_time_are_read(text: str, zero: float, rate: float | None) 
         "1" + "0" * 5000,
     ],
 )
-def test_what_is_no_function_of_time_is_refused(text: str) -> None:
+def test_texts_that_are_no_function_of_time_are_refused(text: str) -> None:
     with pytest.raises(UserError, match="motion: the function of time"):
         as_law(text, "motion")

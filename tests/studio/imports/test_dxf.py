@@ -57,7 +57,7 @@ def test_without_a_motor_it_is_left_to_its_user(tmp_path: Path) -> None:
     assert m.mobility().dof == 1
 
 
-def test_what_is_no_sketch_is_refused(tmp_path: Path) -> None:
+def test_files_without_a_sketch_are_refused(tmp_path: Path) -> None:
     file = tmp_path / "a.dxf"
     text = io.StringIO()
     document = new("R2010")

@@ -67,7 +67,7 @@ def test_damaged_samples_are_read_or_refused(seed: int) -> None:
     ],
     ids=lambda text: text[:30],
 )
-def test_what_no_program_wrote_is_an_error_and_takes_no_time(text: str, said: str) -> None:
+def test_hostile_files_are_an_error_and_take_no_time(text: str, said: str) -> None:
     began = time.monotonic()
     with pytest.raises(UserError) as refused:
         read(text) if "://" in text else read_text(text, "file")
@@ -76,7 +76,7 @@ def test_what_no_program_wrote_is_an_error_and_takes_no_time(text: str, said: st
 
 
 @pytest.mark.parametrize("name", ["/dev/zero", "a\0b", "x" * 5000, "", "\udcff"])
-def test_what_is_no_file_is_an_error(name: str) -> None:
+def test_missing_files_are_an_error(name: str) -> None:
     """Reading /dev/zero stops at the limit of bytes, though its size is given as 0."""
     with pytest.raises(UserError):
         read(name)
@@ -90,7 +90,7 @@ def test_a_file_that_is_too_large_is_an_error(tmp_path: Path) -> None:
         read(str(file))
 
 
-def test_what_is_said_of_a_file_is_printable() -> None:
+def test_words_on_a_file_are_printable() -> None:
     """Names of a file end up on a terminal: neither escape codes nor half a surrogate may."""
     said = read_text("mech=\nground,a,R,0,0\na,\x1b[31mb,G,1,1\n", "\udcff\x1b.txt").left_out
     assert said == [words for words in said if words.isprintable()]

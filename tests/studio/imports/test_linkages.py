@@ -101,7 +101,7 @@ def test_pylinkage_is_read() -> None:
         (b"freeCAD\nAssembly\n", "Assembly has no Name"),
     ],
 )
-def test_what_is_none_of_them_is_refused(tmp_path: Path, content: bytes, said: str) -> None:
+def test_unknown_formats_are_refused(tmp_path: Path, content: bytes, said: str) -> None:
     file = tmp_path / "file"
     file.write_bytes(content)
     with pytest.raises(UserError) as refused:

@@ -55,7 +55,7 @@ def test_functions_of_python_are_named(tmp_path: Path) -> None:
         ({"bodies": "none"}, "TypeError"),
     ],
 )
-def test_what_is_no_planar_mechanism_is_refused(tmp_path: Path, parts: dict[str, object], said: str) -> None:
+def test_files_without_a_planar_mechanism_are_refused(tmp_path: Path, parts: dict[str, object], said: str) -> None:
     with pytest.raises(UserError, match=said):
         read(str(changed(tmp_path, **parts)))
 

@@ -134,7 +134,7 @@ def test_only_the_first_input_of_a_machine_drives_it() -> None:
     assert sketch.left_out == ["input D: PMKS+ moves that machine by its input A"]
 
 
-def test_what_cannot_be_said_is_named() -> None:
+def test_features_that_cannot_be_exported_are_named() -> None:
     lone = stamped(
         ADDRESSES["four_bar"].replace(".GC,C,l1,WW,0.", ".GC,C,l1,WW,0.2X,X,1,1,0.").replace("B,C,,.", "B,C,X,,.")
     )

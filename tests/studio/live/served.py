@@ -27,6 +27,7 @@ from studio.live.processes.trees import MARK
 from studio.live.server import LARGEST, Live
 from studio.live.session import Session
 from tests.studio.live import elsewhere
+from tests.studio.live.arm import ARM
 
 WAIT = 240.0
 """Seconds that a test waits at most; a machine may be busy."""
@@ -180,6 +181,19 @@ def served(
         patch.undo()
     assert not thread.is_alive()
     assert not processes_of(live.nursery.mark), "no process outlives the server"
+
+
+def live_server(folder: str, name: str = "arm", source: str = ARM, limit: float = 30.0) -> Any:
+    """Return a fixture of a test file: a server of one mechanism, once a page has its first motion."""
+
+    @pytest.fixture(scope="module", name="live")
+    def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+        with served(tmp_path_factory.mktemp(folder) / "mechanisms", name, source, limit) as server:
+            with server.page() as page:
+                page.hear("motion", "state", wanted=lambda header: bool(header["payload"]))
+            yield server
+
+    return live
 
 
 def processes_of(mark: str) -> list[psutil.Process]:

@@ -6,7 +6,6 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Iterator
 
 import httpx
 import psutil
@@ -14,25 +13,15 @@ import pytest
 
 from studio.live.processes import stages
 from studio.live.processes.pipe import LONGEST
-from tests.studio.live.arm import ARM
-from tests.studio.live.served import Page, Served, served
+from tests.studio.live.arm import arm
+from tests.studio.live.served import Page, Served, live_server
 
-
-def good(length: float) -> str:
-    return ARM.replace("length: float = 0.2 ", f"length: float = {length!r} ")
-
-
-@pytest.fixture(scope="module")
-def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    with served(tmp_path_factory.mktemp("faulty") / "mechanisms", "arm", ARM, 60.0) as server:
-        with server.page() as page:
-            page.hear("motion", "state", wanted=lambda header: bool(header["payload"]))
-        yield server
+live = live_server("faulty", limit=60.0)
 
 
 def followed(live: Served, page: Page, length: float) -> None:
     """Save a length and wait until the page shows it."""
-    live.write(good(length))
+    live.write(arm(length))
     page.hear("solved", wanted=lambda header: header["numbers"][0]["value"] == length)
     assert page.hear("motion")["payload"]
 
@@ -42,7 +31,7 @@ def test_a_warm_process_hit_at_the_moment_of_a_save(live: Served, number: signal
     warm = live.live.nursery.warm_pid
     with live.page() as page:
         length = 0.3 + number / 1000
-        live.write(good(length))
+        live.write(arm(length))
         os.kill(warm, number)
         assert httpx.get(live.live.address, timeout=10).status_code == 200
         told = page.hear("line")["text"]
@@ -58,7 +47,7 @@ def test_a_save_ends_a_fit_and_the_page_hears_of_it(live: Served) -> None:
         followed(live, page, 0.42)
         page.say(do="fit", point="P", path=[[0.3, 0.1], [0.2, 0.2]], starts=100, generations=50_000)
         page.hear("progress")
-        live.write(good(0.425))
+        live.write(arm(0.425))
         assert page.hear("fitted")["cancelled"]
         page.hear("motion")
         page.say(do="cancel")
@@ -83,7 +72,7 @@ def test_a_process_stopped_while_it_solves_is_replaced(live: Served, monkeypatch
 def test_saves_one_upon_the_other_end_with_the_last(live: Served) -> None:
     with live.page() as page:
         for k in range(25):
-            live.write(good(0.5 + k / 1000))
+            live.write(arm(0.5 + k / 1000))
             time.sleep(0.02 * (k % 3))
         page.hear("solved", wanted=lambda header: header["numbers"][0]["value"] == 0.524)
         page.hear("motion")
@@ -97,7 +86,7 @@ def test_saves_one_upon_the_other_end_with_the_last(live: Served) -> None:
 def test_a_file_that_forks_is_answered_once(live: Served) -> None:
     """Both processes go on with the file, but only one of them speaks with the server."""
     with live.page() as page:
-        live.write(f"{good(0.441)}\nimport os\nos.fork()\nprint('said')\n")
+        live.write(f"{arm(0.441)}\nimport os\nos.fork()\nprint('said')\n")
         page.hear("motion")
         for length in (0.442, 0.443, 0.444):
             page.say(do="set", values={"length": length})
@@ -128,7 +117,7 @@ def test_an_error_of_the_server_does_not_end_following(live: Served, monkeypatch
 
     with live.page() as page:
         monkeypatch.setattr(live.session, "reload", fails)
-        live.write(good(0.47))
+        live.write(arm(0.47))
         assert "a fault of ours" in page.hear("error")["text"]
         followed(live, page, 0.48)
 

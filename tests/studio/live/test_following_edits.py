@@ -5,14 +5,13 @@ from __future__ import annotations
 import os
 import random
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import psutil
 import pytest
 
-from tests.studio.live.arm import ARM
-from tests.studio.live.served import Served, served
+from tests.studio.live.arm import arm
+from tests.studio.live.served import Served, live_server
 
 LIMIT = 15.0
 """Seconds; on a busy machine a good edit takes some."""
@@ -36,14 +35,7 @@ BROKEN = {
 """Edits that cannot be solved; ``k`` makes each another file."""
 
 
-@pytest.fixture(scope="module")
-def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    with served(tmp_path_factory.mktemp("edited") / "mechanisms", "arm", ARM, LIMIT) as server:
-        yield server
-
-
-def good(length: float) -> str:
-    return ARM.replace("length: float = 0.2 ", f"length: float = {length!r} ")
+live = live_server("edited", limit=LIMIT)
 
 
 def test_eighty_edits_half_of_them_broken(live: Served) -> None:
@@ -57,12 +49,12 @@ def test_eighty_edits_half_of_them_broken(live: Served) -> None:
             length = 0.1 + k / 1000
             if k % 2:
                 kind = chosen.choice(sorted(BROKEN))
-                live.write(BROKEN[kind](good(length), k))
+                live.write(BROKEN[kind](arm(length), k))
                 error = page.hear("error")["text"]
                 assert error, kind
                 assert live.session.board.payload, "the last good motion is still there"
             else:
-                live.write(good(length))
+                live.write(arm(length))
                 solved = page.hear(
                     "solved", wanted=lambda header, length=length: header["numbers"][0]["value"] == length
                 )
@@ -78,13 +70,13 @@ def test_eighty_edits_half_of_them_broken(live: Served) -> None:
 
 def test_endless_loops_are_ended_and_newer_edits_do_not_wait(live: Served, monkeypatch: pytest.MonkeyPatch) -> None:
     with live.page() as page:
-        live.write(f"{good(0.31)}\nwhile True:\n    pass\n")
+        live.write(f"{arm(0.31)}\nwhile True:\n    pass\n")
         page.hear("solving")
-        live.write(good(0.32))
+        live.write(arm(0.32))
         page.hear("solved", wanted=lambda header: header["numbers"][0]["value"] == 0.32)
         page.hear("motion")
         monkeypatch.setattr(live.live.nursery, "limit", 2.0)
-        live.write(f"{good(0.33)}\nimport time\nwhile True:\n    time.sleep(1)\n")
+        live.write(f"{arm(0.33)}\nimport time\nwhile True:\n    time.sleep(1)\n")
         began = time.monotonic()
         assert "did not end within 2 s" in page.hear("error")["text"]
         assert time.monotonic() - began < 10 * LIMIT
@@ -94,18 +86,18 @@ def test_endless_loops_are_ended_and_newer_edits_do_not_wait(live: Served, monke
 def test_a_file_that_is_gone_is_told_and_may_come_back(live: Served) -> None:
     file = live.folder / "arm" / "mechanism.py"
     with live.page() as page:
-        live.write(good(0.34))
+        live.write(arm(0.34))
         page.hear("motion")
         file.unlink()
         assert "arm" in page.hear("error")["text"]
-        live.write(good(0.35))
+        live.write(arm(0.35))
         page.hear("solved", wanted=lambda header: header["numbers"][0]["value"] == 0.35)
 
 
-def test_what_the_file_imports_is_followed_and_a_touch_is_no_edit(live: Served, tmp_path: Path) -> None:
+def test_imported_files_are_followed_and_a_touch_is_no_edit(live: Served, tmp_path: Path) -> None:
     helper = live.folder / "arm" / "sizes.py"
     helper.write_text("LENGTH = 0.4\n")
-    text = good(0.36).replace("from mbsd", "from mechanisms.arm.sizes import LENGTH\n\nfrom mbsd", 1)
+    text = arm(0.36).replace("from mbsd", "from mechanisms.arm.sizes import LENGTH\n\nfrom mbsd", 1)
     data = tmp_path / "length.txt"
     data.write_text("0.5")
     text = text.replace("0.36 ", f"LENGTH + float(open({str(data)!r}).read()) ", 1)
@@ -123,9 +115,9 @@ def test_what_the_file_imports_is_followed_and_a_touch_is_no_edit(live: Served, 
             page._socket.recv(timeout=0.6)
 
 
-def test_what_is_printed_and_warned_reaches_the_page(live: Served) -> None:
+def test_prints_and_warnings_reach_the_page(live: Served) -> None:
     with live.page() as page:
-        live.write(f"{good(0.37)}\nprint('said by the file')\n")
+        live.write(f"{arm(0.37)}\nprint('said by the file')\n")
         assert page.hear("line")["text"] == "said by the file"
         page.hear("motion")
     with live.page() as later:

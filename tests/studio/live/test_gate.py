@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterator
 
 import httpx
 import pytest
 from websockets.exceptions import InvalidStatus
 
 from studio.live.server import Gate
-from tests.studio.live.arm import ARM
-from tests.studio.live.served import Served, served
+from tests.studio.live.served import Served, live_server
 
 TOKEN, PORT = "secret-word", 8123
 
@@ -78,10 +76,7 @@ def test_other_scopes_pass() -> None:
     assert called == ["lifespan"]
 
 
-@pytest.fixture(scope="module")
-def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    with served(tmp_path_factory.mktemp("guarded") / "mechanisms", "arm", ARM, 30.0) as server:
-        yield server
+live = live_server("guarded")
 
 
 def test_a_second_origin_is_refused_by_the_server_itself(live: Served) -> None:

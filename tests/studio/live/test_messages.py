@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Iterator
 
 import httpx
 import pytest
@@ -13,8 +12,7 @@ from websockets.exceptions import ConnectionClosed
 from shared.stage.errors import UserError
 from studio.live import messages
 from studio.live.messages import Cancel, Drag, Fit, Mailbox, Set, Thing, Write, wish_of
-from tests.studio.live.arm import ARM
-from tests.studio.live.served import Page, Served, served
+from tests.studio.live.served import Page, Served, live_server
 
 P = '"thing": {"kind": "point", "name": "P"}, "time": 0'
 HOSTILE = [
@@ -90,12 +88,7 @@ def test_messages_of_the_page_are_understood() -> None:
     assert wish_of('{"do": "cancel"}') == Cancel()
 
 
-@pytest.fixture(scope="module")
-def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    with served(tmp_path_factory.mktemp("hostile") / "mechanisms", "arm", ARM, 30.0) as server:
-        with server.page() as page:
-            page.hear("motion", "state", wanted=lambda header: bool(header["payload"]))
-        yield server
+live = live_server("hostile")
 
 
 def set_and_seen(page: Page, other: Page, length: float) -> None:

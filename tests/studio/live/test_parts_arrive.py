@@ -16,7 +16,7 @@ from render.view.bundle import node, node_modules
 from studio.live.page import page
 from studio.live.processes import stages
 from tests.running.needs import needed
-from tests.studio.live.arm import ARM
+from tests.studio.live.arm import ARM, arm
 from tests.studio.live.served import served
 
 SCRIPT = Path(__file__).parent / "parts.cjs"
@@ -38,10 +38,6 @@ WRONG = "raise RuntimeError('no unobtainium')\n"
 BROKEN = ARM.replace("p.length", "p.lenght")
 
 
-def long(length: float) -> str:
-    return ARM.replace("length: float = 0.2 ", f"length: float = {length!r} ")
-
-
 @pytest.mark.slow
 def test_parts_follow_the_skeleton(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = tmp_path / "mechanisms"
@@ -50,7 +46,7 @@ def test_parts_follow_the_skeleton(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(stages, "NICE", 0)  # beside other tests it would wait
     environment = os.environ | {"CHROMIUM": needed("chromium"), "NODE_PATH": str(node_modules())}
     edits = {
-        "longer": [("parts.py", SLOW), ("mechanism.py", long(0.3))],
+        "longer": [("parts.py", SLOW), ("mechanism.py", arm(0.3))],
         "break": [("mechanism.py", BROKEN)],
         "cure": [("parts.py", PARTS), ("mechanism.py", ARM)],
         "finer": [("mechanism.py", ARM.replace("STEPS = 24", "STEPS = 36"))],

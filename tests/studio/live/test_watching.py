@@ -64,7 +64,7 @@ def test_a_file_that_was_saved_while_it_was_read_has_changed(tmp_path: Path) -> 
     assert watch._changed(watch._all()) == {new}
 
 
-def test_what_is_being_written_beside_a_file_is_no_file_of_the_author(tmp_path: Path) -> None:
+def test_files_being_written_are_no_files_of_the_author(tmp_path: Path) -> None:
     watch = Watch(tmp_path)
     (tmp_path / ".mechanism-x7.py").write_text("half of it")
     assert watch._changed(watch._all()) == set()

@@ -8,15 +8,10 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from tests.studio.live.served import FOUR_BAR, Page, Served, served
+from tests.render.view.decoded import decoded
+from tests.studio.live.served import FOUR_BAR, Page, Served, live_server
 
-
-@pytest.fixture(scope="module")
-def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    with served(tmp_path_factory.mktemp("wished") / "mechanisms", "links", FOUR_BAR, 30.0) as server:
-        with server.page() as page:
-            page.hear("motion", "state", wanted=lambda header: bool(header["payload"]))
-        yield server
+live = live_server("wished", "links", FOUR_BAR)
 
 
 @pytest.fixture
@@ -34,26 +29,6 @@ def page(live: Served) -> Iterator[Page]:
             tab.hear("motion")
         live.session.history.keep(set())
         yield tab
-
-
-def decoded(payload: bytes) -> dict:
-    """The payload as the page reads it."""
-    import json
-    import struct
-
-    assert payload[:4] == b"MBSV"
-    (length,) = struct.unpack_from("<I", payload, 8)
-    start = -(-(12 + length) // 8) * 8
-
-    def array(value: dict) -> object:
-        if "$" not in value:
-            return value
-        kind, offset, count = value["$"]
-        dtype = np.dtype(f"<{kind}")
-        planes = np.frombuffer(payload, np.uint8, count * dtype.itemsize, start + offset)
-        return planes.reshape(dtype.itemsize, count).T.copy().view(dtype).ravel()
-
-    return json.loads(payload[12 : 12 + length], object_hook=array)
 
 
 def test_sliders_have_the_numbers_of_params_with_their_ranges(live: Served) -> None:
@@ -100,7 +75,7 @@ def test_where_it_cannot_be_closed_it_is_shown_up_to_there(page: Page) -> None:
     assert shown["period"] is None
 
 
-def test_what_closes_nowhere_is_refused_and_the_last_motion_stays(live: Served, page: Page) -> None:
+def test_wishes_that_close_nowhere_are_refused_and_the_last_motion_stays(live: Served, page: Page) -> None:
     before = live.session.board.payload
     page.say(do="set", values={"crank": 1.0})
     assert "do not close" in page.hear("refused")["text"]

@@ -5,8 +5,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -65,11 +63,3 @@ def finished(night: subprocess.Popen[str], seconds: float = 60.0) -> tuple[int, 
     """Exit code, stdout and stderr of a night after its end."""
     out, err = night.communicate(timeout=seconds)
     return night.returncode, out, err
-
-
-def until(condition: Callable[[], object], seconds: float = 30.0) -> None:
-    """Wait for something."""
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.05)

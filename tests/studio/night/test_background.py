@@ -12,7 +12,8 @@ import pytest
 
 from studio.night import background
 from tests.running.needs import needs
-from tests.studio.night.nights import Night, finished, until
+from tests.running.processes import until
+from tests.studio.night.nights import Night, finished
 
 
 @pytest.fixture

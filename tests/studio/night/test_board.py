@@ -63,7 +63,7 @@ def test_a_probe_that_can_never_be_made_holds_no_film_up():
 
 
 @given(st.sets(st.sampled_from(list(NEEDS))))
-def test_what_follows_a_step_with_something_to_do_is_looked_at_again(fresh):
+def test_steps_after_a_changed_step_are_looked_at_again(fresh):
     board = Board(["a"], {"a": fresh})
     for step, state in board.steps_of("a").items():
         stale = step not in fresh or any(step in followers(other) for other in set(NEEDS) - fresh)

@@ -12,9 +12,9 @@ from render.presets import PRESETS, preset_named
 from shared.stage.errors import UserError
 from studio.night.plan.options import Options, options
 from studio.night.plan.steps import STEPS, command
-from tests.running.processes import working_for
+from tests.running.processes import until, working_for
 from tests.studio.command.plans import STAGES, planned
-from tests.studio.night.nights import Night, finished, until
+from tests.studio.night.nights import Night, finished
 
 
 @pytest.fixture
@@ -44,7 +44,7 @@ def test_a_failure_stops_no_other_and_table_and_exit_code_tell_it(night: Night):
     assert "four_bar: clearance: four_bar has a bad link; make it longer" in status
 
 
-def test_what_is_asked_for_reaches_the_stages(night: Night):
+def test_options_reach_the_stages(night: Night):
     code, out, _ = finished(
         night.start("four_bar", "--show=forces,title", "--sound=off", "--spectra=shaking force", "--watts=85")
     )
@@ -85,7 +85,7 @@ def test_a_film_that_another_process_renders_is_waited_for(night: Night):
 
 
 @pytest.mark.parametrize("how", ["crash", "killed"])
-def test_what_crashes_is_started_once_more(night: Night, how: str):
+def test_crashed_steps_are_started_once_more(night: Night, how: str):
     night.tell("four_bar", "film", f"once {how}")
     night.tell("slider_crank", "film", how)
     code, _, err = finished(night.start("four_bar,slider_crank"))
@@ -95,7 +95,7 @@ def test_what_crashes_is_started_once_more(night: Night, how: str):
     assert f"it was killed by {'SIGSEGV' if how == 'crash' else 'SIGKILL'}" in err
 
 
-def test_what_hangs_is_killed_and_started_once_more(night: Night):
+def test_hanging_steps_are_killed_and_started_once_more(night: Night):
     night.tell("four_bar", "plots", "once hang")
     code, _, err = finished(night.start("four_bar", hurried=True, MBSD_PATIENCE="0.05"))
     assert code == 0, err

@@ -12,8 +12,7 @@ import pytest
 
 from shared.contract.shot import Shot
 from shared.stage.paths import ROOT
-from tests.running.processes import working_for
-from tests.studio.night.nights import until
+from tests.running.processes import until, working_for
 from tools.fixtures import film_fixture
 
 PICTURES = 60

@@ -23,7 +23,7 @@ def test_the_first_picture_has_time_for_the_kernels_of_a_gpu(monkeypatch: pytest
     assert limit(True, 0.1, 0) == pytest.approx(TWICE * KERNELS)
 
 
-def test_what_makes_no_pictures_has_an_hour_whatever_a_picture_takes(monkeypatch: pytest.MonkeyPatch):
+def test_steps_without_pictures_have_an_hour_whatever_a_picture_takes(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.delenv("MBSD_PATIENCE", raising=False)
     assert limit(False, 1000.0, 0) == STAGE
     monkeypatch.setenv("MBSD_PATIENCE", str(FLOOR / 60))

@@ -29,9 +29,9 @@ class Shop:
         monkeypatch.setattr(pages, "_current", lambda names: self.current & set(names))
         monkeypatch.setattr(pictures, "chromium", lambda: "browser")
         monkeypatch.setattr(pictures, "version_of", lambda browser: self.version)
-        monkeypatch.setattr(pictures, "take_picture", self.take)
+        monkeypatch.setattr(pictures, "take_picture", self.take_picture)
 
-    def take(self, out: Out, browser: str) -> None:
+    def take_picture(self, out: Out, browser: str) -> None:
         if out.name in self.refused:
             raise UserError(f"{out.name}: the page complained")
         self.taken.append(out.name)
@@ -80,17 +80,17 @@ def test_a_stopped_run_goes_on(shop: Shop, monkeypatch: pytest.MonkeyPatch) -> N
     def stop(out: Out, browser: str) -> None:
         if out.name == "pendulum":
             raise KeyboardInterrupt
-        shop.take(out, browser)
+        shop.take_picture(out, browser)
 
     monkeypatch.setattr(pictures, "take_picture", stop)
     with pytest.raises(KeyboardInterrupt):
         pages.run(NAMES)
-    monkeypatch.setattr(pictures, "take_picture", shop.take)
+    monkeypatch.setattr(pictures, "take_picture", shop.take_picture)
     assert pages.run(NAMES) == 0
     assert shop.taken == NAMES
 
 
-def test_what_is_out_of_date_is_made_by_its_stages(
+def test_outdated_products_are_rebuilt_by_their_stages(
     shop: Shop, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Here the stage of the page says why it cannot: there is no motion."""

@@ -79,7 +79,7 @@ def _solved_again(out: Out) -> None:
     _stamped(out, "solve", out.motion)
 
 
-def test_what_is_of_the_motion_before_is_left_out_and_named_once(out: Out, capsys: pytest.CaptureFixture[str]) -> None:
+def test_files_of_an_older_motion_are_left_out_and_named_once(out: Out, capsys: pytest.CaptureFixture[str]) -> None:
     """Report, GLB, film and plates of the machine before were published without a word."""
     assert build.run([NAME]) == 0
     site = out.folder.parent / "site" / NAME

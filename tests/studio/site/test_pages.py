@@ -36,7 +36,7 @@ def entry(name: str, said: str = "", **more) -> Entry:
     return Entry(name, name.replace("_", " "), said, ["1 degree of freedom"], ["gears"], picture="picture.jpg", **more)
 
 
-def test_what_an_author_writes_is_no_html() -> None:
+def test_words_of_an_author_are_no_html() -> None:
     nasty = 'a <script>alert("x")</script> & "quotes"'
     page = Read(wall("All", [entry("press", nasty), entry("lift")], ["gears", "a & b"]))
     assert nasty in page.words

@@ -130,7 +130,7 @@ class Verdict:
     within: float
     forces_within: float
     fault: str = ""
-    """What is wrong beside a difference, if anything."""
+    """A fault beside a difference, if any."""
 
     @property
     def is_good(self) -> bool:

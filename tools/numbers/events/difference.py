@@ -22,7 +22,7 @@ class Difference(NamedTuple):
     motion: float
     forces: float
     where: str
-    """What is farthest, or what is not the same."""
+    """The farthest value, or the one that is not the same."""
 
 
 def difference(before: Outcome, now: Outcome) -> Difference:

@@ -25,6 +25,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mbsd.compiling.jit import internal, kernel
+from mbsd.dynamics.events.laws.complementarity import pivot
 
 PIVOT = 1e-10
 """Entries up to this are no pivots; the table is of order one."""
@@ -50,15 +51,7 @@ def holding_of(c: int, k: int) -> Holding:
 @internal
 def _pivot(table, basis, rows, last, row, column):
     """Let ``column`` be of the basis in ``row``; two rows behind ``rows`` are objectives."""
-    factor = table[row, column]
-    for j in range(last + 1):
-        table[row, j] /= factor
-    for i in range(rows + 2):
-        part = table[i, column]
-        if i != row and part != 0.0:
-            for j in range(last + 1):
-                table[i, j] -= part * table[row, j]
-            table[i, column] = 0.0
+    pivot(table, rows + 2, last, row, column)
     basis[row] = column
 
 

@@ -23,6 +23,7 @@ from __future__ import annotations
 
 import math
 
+from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import apart, internal, lazy
 from mbsd.dynamics.events.arrays import (
     FAILURE,
@@ -53,6 +54,7 @@ from mbsd.dynamics.events.arrays import (
 from mbsd.dynamics.events.friction import (
     AT_LIMIT,
     BEGINS,
+    FAINT,
     acceleration_of,
     begin_deciding,
     begin_touched,
@@ -65,12 +67,12 @@ from mbsd.dynamics.events.friction import (
     press,
     solve_with_friction,
 )
-from mbsd.dynamics.events.jumps import FAINT
 from mbsd.dynamics.events.laws.division import divide
 from mbsd.dynamics.events.rows import gaps_of
 from mbsd.dynamics.events.sticking.sharing import limit_of, stand
 from mbsd.dynamics.events.sticking.together import divide_together
-from mbsd.dynamics.formulation import along, respond
+from mbsd.dynamics.formulation import along, push, respond
+from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.state import TIME
 from mbsd.equations.joint_friction import FAINT as FAINT_LOAD
 from mbsd.equations.joint_friction import MOST_PASSES, SENSE, SETTLED, X, apply_friction, normal_forces
@@ -252,7 +254,7 @@ def gives_way(contacts, rounding):
         if taking[k] == 0:
             continue
         if k < gaps:
-            bend = acceleration_of(contacts, contacts.friction.compliance, force, k)[0]
+            bend = acceleration_of(contacts, force, k)[0]
             agrees = agrees and force[k] >= 0.0 and (gives[k] != 0.0 or bend >= 0.0)
             continue
         most = _limit_of(contacts, k, force)
@@ -299,7 +301,7 @@ def _choose(dyn, scratch, contacts, v, halted):
         contacts.chosen[TAKING, k] = contacts.chosen[RESTING, k]
 
 
-@internal
+@lazy(None)
 def _share_rest(contacts, rounding):
     """Share friction among the joints that stay at rest, with contacts that stick N and T."""
     vector = contacts.sticks.vector
@@ -344,8 +346,7 @@ def find_left(contacts, rounding):
 
 
 @internal
-def _loads(dyn, scratch, contacts, t, y):
-    """Fill sticks.load[0] with all loads but friction of joints, after stand."""
+def _loads_in_plane(dyn, scratch, contacts, t, y):
     load = contacts.sticks.load[0]
     for c in range(load.shape[0]):
         load[c] = dyn.weight[c]
@@ -354,15 +355,50 @@ def _loads(dyn, scratch, contacts, t, y):
 
 
 @internal
-def _add_sliding(contacts, lam):
-    """Add what the friction of sliding contacts under vector[FORCE] changes of the multipliers lam (m,)."""
+def _loads(dyn, scratch, contacts, t, y):
+    load = contacts.sticks.load[0]
+    for c in range(load.shape[0]):
+        load[c] = scratch.force[c]
+    for b in range(dyn.schur.rows.shape[0]):
+        for s in range(2):
+            row = dyn.schur.rows[b, s]
+            if row >= 0:
+                push(dyn, scratch, row, contacts.lam[row], load)
+
+
+@internal
+def _add_friction_in_plane(dyn, scratch, v, normal, load):
+    apply_friction(dyn.system, dyn.loads, v, scratch.ws, normal, 1.0, load)
+
+
+@internal
+def _add_no_friction(dyn, scratch, v, normal, load):
+    pass
+
+
+find_loads = alternatives({Dynamics: _loads_in_plane}, _loads)
+"""(dyn, scratch, contacts, t, y): fill sticks.load[0] with all loads but friction of joints, after stand. In added
+formulations they are what accelerations have left of the forces, and what the rows that hold carry."""
+add_friction = alternatives({Dynamics: _add_friction_in_plane}, _add_no_friction)
+"""(dyn, scratch, v, normal, load): add friction of joints under normal forces (f,); added formulations have none."""
+
+
+@lazy(None)
+def _press_joints(dyn, scratch, contacts, lam):
+    """Fill normal[FOUND] by multipliers lam (m,), to which vector[FORCE] and friction of sliding contacts are added."""
     friction = contacts.friction
+    sticks = contacts.sticks
+    for k in range(contacts.place.shape[0]):
+        if contacts.chosen[TAKING, k] != 0:
+            for r in range(lam.shape[0]):
+                lam[r] += sticks.borne[k, r] * sticks.vector[FORCE, k]
     for w in range(friction.gap.shape[0]):
-        normal = contacts.sticks.vector[FORCE, friction.gap[w]]
+        normal = sticks.vector[FORCE, friction.gap[w]]
         force = -friction.number[w, KINETIC] * friction.number[w, GUESS] * normal
         if force != 0.0:
             for r in range(lam.shape[0]):
                 lam[r] += contacts.sticks.borne[gaps_of(contacts) + w, r] * force
+    normal_forces(dyn.loads, scratch.ws, scratch.ws.jac, lam, sticks.normal[FOUND])
 
 
 @internal
@@ -376,7 +412,7 @@ def _try(dyn, scratch, contacts, v, hair, rounding, giving):
     lam = sticks.lam[1]
     for c in range(load.shape[0]):
         load[c] = sticks.load[0, c]
-    apply_friction(dyn.system, dyn.loads, v, scratch.ws, sticks.normal[NOW], 1.0, load)
+    add_friction(dyn, scratch, v, sticks.normal[NOW], load)
     largest = 0.0
     for c in range(3, load.shape[0]):
         largest = max(largest, abs(load[c]))
@@ -395,14 +431,11 @@ def _try(dyn, scratch, contacts, v, hair, rounding, giving):
         if not solve_with_friction(contacts, pressed, contacts.vector[FREE], HOLDING, sticks.vector[FORCE]):
             return -1.0
         keep_pushes(contacts)
-        _share_rest(contacts, rounding)
+        if sticks.joint.shape[0] > 0:
+            _share_rest(contacts, rounding)
         note_giving(contacts, rounding)
-    for k in range(contacts.place.shape[0]):
-        if contacts.chosen[TAKING, k] != 0:
-            for r in range(lam.shape[0]):
-                lam[r] += sticks.borne[k, r] * sticks.vector[FORCE, k]
-    _add_sliding(contacts, lam)
-    normal_forces(dyn.loads, scratch.ws, scratch.ws.jac, lam, sticks.normal[FOUND])
+    if sticks.normal.shape[1] > 0:
+        _press_joints(dyn, scratch, contacts, lam)
     return largest
 
 
@@ -444,7 +477,7 @@ def _agree(dyn, scratch, contacts, v, hair, rounding, giving):
     return -1.0
 
 
-@apart
+@lazy(bool)
 def decide(dyn, scratch, contacts, state, halted, slipping, touched):
     """Find normal forces of gaps in chosen[STAYING], NEXT_SIGN of their ways, number[SIGN] of joints; False: none.
 
@@ -458,9 +491,9 @@ def decide(dyn, scratch, contacts, state, halted, slipping, touched):
     largest = -1.0
     hair = 1.0 - HAIR if slipping else 1.0
     rounding = AT_LIMIT_BEYOND if slipping else AT_LIMIT
-    stand(dyn, scratch, state.clock[TIME], state.y)
+    stand(dyn, scratch, contacts, state.clock[TIME], state.y)
     begin_deciding(contacts, hair)
-    _loads(dyn, scratch, contacts, state.clock[TIME], state.y)
+    find_loads(dyn, scratch, contacts, state.clock[TIME], state.y)
     for _ in range(contacts.friction.gap.shape[0] + 1):
         _choose(dyn, scratch, contacts, v, halted)
         begin_giving(contacts)
@@ -475,7 +508,7 @@ def decide(dyn, scratch, contacts, state, halted, slipping, touched):
         if not breaks(contacts, FAINT * largest, rounding):
             break
     find_left(contacts, rounding)
-    begin_touched(contacts, contacts.friction.compliance, touched, FAINT * largest, rounding)
+    begin_touched(contacts, touched, FAINT * largest, rounding)
     for k in range(count):
         if k < gaps and contacts.vector[NORMAL, k] != BEGINS and not contacts.vector[NORMAL, k] > FAINT * largest:
             contacts.vector[NORMAL, k] = 0.0

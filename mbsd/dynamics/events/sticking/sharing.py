@@ -1,4 +1,4 @@
-"""Joints at rest that hold each other: what each carries, and how near they are to giving way.
+"""Joints at rest that hold each other: how they and what presses them answer to forces (together.py shares these).
 
 One set of rows holds them, and its multipliers carry all. The friction is shared among all joints at rest
 (events/laws/division.py); their limits depend on reactions, which change with the shares, so it is shared again until
@@ -34,31 +34,20 @@ friction of joints that slide under unit normal forces. All is linear in x.
 
 from __future__ import annotations
 
+from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import apart, internal
 from mbsd.dynamics.events.arrays import (
     BASIS,
     BLOCK,
-    CLOSED,
-    FORCE,
     FOUND,
-    FRICTION,
     HELD,
-    KIND,
-    LEFT,
-    LIMIT,
     NOW,
-    PREVIOUS,
-    RESTING,
-    ROW,
     SIDE,
-    UNSHARED,
-    WAY,
 )
 from mbsd.dynamics.events.friction import gives
-from mbsd.dynamics.events.laws.division import divide
-from mbsd.dynamics.events.pushes import find_answer, read_compliance
-from mbsd.dynamics.events.rows import hold_rows
-from mbsd.dynamics.formulation import along, respond
+from mbsd.dynamics.events.rows import find_answer, read_compliance
+from mbsd.dynamics.formulation import along, derivative, respond
+from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.reference.schur import factor_schur
 from mbsd.dynamics.reference.sliding import begin_sliding, slide
 from mbsd.equations.assembly import evaluate_gamma, evaluate_position
@@ -66,18 +55,9 @@ from mbsd.equations.joint_friction import PIN, PRELOAD, SHAPE, SIZE, STATIC, app
 from mbsd.equations.laws import evaluate_laws
 from mbsd.equations.products import eliminate
 
-PASSES = 100
-"""Passes in which joints at rest agree on how they share their friction, at most."""
-AGREED = 1e-12
-"""Part of the largest friction that may still change."""
-
 
 @apart
-def stand(dyn, scratch, t, y):
-    """Fill scratch.ws and, with the rows that hold now, the factors at a state y (2, 3 nb) and time t (s).
-
-    gamma (m,) is in scratch.ws.right[0].
-    """
+def _stand_in_plane(dyn, scratch, contacts, t, y):
     if scratch.drive.shape[0] > 1:
         evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
     evaluate_position(dyn.system, y[0], scratch.drive, scratch.ws)
@@ -85,19 +65,20 @@ def stand(dyn, scratch, t, y):
     factor(dyn, scratch)
 
 
+@internal
+def _stand(dyn, scratch, contacts, t, y):
+    derivative(dyn, scratch, t, y, contacts.rates, contacts.lam)
+
+
+stand = alternatives({Dynamics: _stand_in_plane}, _stand)
+"""(dyn, scratch, contacts, t, y): fill scratch.ws and, with the rows that hold now, the factors at a state y (2, 3 + n)
+and time t (s). gamma (m,) is in scratch.ws.right[0]. Added formulations evaluate their accelerations."""
+
+
 @apart
 def factor(dyn, scratch):
     """Factor the rows that hold now, at the pose of scratch.ws."""
     factor_schur(dyn.schur, dyn.inverse, scratch.ws.jac, scratch.factors, 0.0)
-
-
-@internal
-def find_answers(dyn, scratch, contacts, flags):
-    """Fill answer, borne, compliance and vector[ALONE] of the rows in ``flags`` (c,)."""
-    for k in range(contacts.place.shape[0]):
-        if flags[k] != 0:
-            find_answer(dyn, scratch, contacts, k, contacts.sticks.borne[k])
-    read_compliance(dyn, scratch, contacts, flags)
 
 
 @internal
@@ -225,7 +206,7 @@ def limit_of(dyn, k, normal):
 
 
 @internal
-def _find_moved(dyn, contacts, flags):
+def find_moved(dyn, contacts, flags):
     """Fill friction.compliance of the joints in ``flags`` (c,) with V^T M V where contacts slide; whether any does."""
     sliding = False
     for w in range(dyn.sliding.table.shape[0]):
@@ -243,88 +224,3 @@ def _find_moved(dyn, contacts, flags):
             contacts.friction.compliance[k, j] = both
             contacts.friction.compliance[j, k] = both
     return True
-
-
-@internal
-def _agree(dyn, scratch, contacts, sliding, beside, lam):
-    """Divide the friction again until limits agree, under the friction ``beside`` of joints that slide; returns s.
-
-    lam (m,) begins with what presses joints at first.
-    """
-    count = contacts.place.shape[0]
-    flags = contacts.chosen[RESTING]
-    force = contacts.sticks.vector[FORCE]
-    start = contacts.sticks.vector[UNSHARED]
-    previous = contacts.sticks.vector[PREVIOUS]
-    held = contacts.sticks.vector[LEFT]
-    limit = contacts.sticks.vector[LIMIT]
-    before = contacts.sticks.lam[0]
-    normal = contacts.sticks.normal[FOUND]
-    moved = contacts.friction.compliance if sliding else contacts.compliance
-    part = 0.0
-    for k in range(count):
-        force[k] = start[k]
-    for _ in range(PASSES):
-        normal_forces(dyn.loads, scratch.ws, scratch.ws.jac, lam, normal)
-        for k in range(count):
-            if flags[k] != 0:
-                limit[k] = limit_of(dyn, contacts.place[k, FRICTION], normal)
-                previous[k] = force[k]
-                force[k] = add_beside(contacts, k, start[k]) if beside else start[k]
-                held[k] = force[k]
-        part = divide(moved, flags, force, limit, contacts.sticks.division)
-        if sliding:
-            part = divide(contacts.compliance, flags, held, limit, contacts.sticks.division)
-        change = 0.0
-        largest = 0.0
-        for k in range(count):
-            if flags[k] != 0:
-                change = max(change, abs(force[k] - previous[k]))
-                largest = max(largest, abs(force[k]))
-        for r in range(lam.shape[0]):
-            lam[r] = before[r]
-            for k in range(count):
-                if flags[k] != 0:
-                    lam[r] += contacts.sticks.borne[k, r] * (force[k] - start[k])
-        if beside:
-            add_beside_lam(contacts, lam)
-        for k in range(count):
-            if flags[k] != 0:
-                lam[contacts.place[k, ROW]] = -force[k]
-        if change <= AGREED * largest:
-            break
-    return part
-
-
-@apart
-def carry(dyn, scratch, contacts, v, lam, asked):
-    """Divide the friction in the multipliers lam (m,) among the joints at rest, at the pose of scratch.ws.
-
-    Returns the part s of their limits that they need, if it is ``asked`` for under the friction of joints that slide at
-    velocities v (3 nb,).
-    """
-    count = contacts.place.shape[0]
-    flags = contacts.chosen[RESTING]
-    start = contacts.sticks.vector[UNSHARED]
-    before = contacts.sticks.lam[0]
-    held = contacts.sticks.together.held
-    for k in range(count):
-        flags[k] = 1 if contacts.place[k, KIND] == WAY and contacts.number[k, CLOSED] > 0.0 else 0
-        start[k] = -lam[contacts.place[k, ROW]]
-    answer_resting(dyn, scratch, contacts, flags)
-    hold_rows(dyn, contacts)
-    sliding = _find_moved(dyn, contacts, flags)
-    for r in range(lam.shape[0]):
-        before[r] = lam[r]
-    part = _agree(dyn, scratch, contacts, sliding, False, lam)
-    if not asked or not press_beside(dyn, scratch, contacts, v, before, True):
-        return part
-    for k in range(count):
-        held[k] = 1 if flags[k] != 0 and contacts.number[k, HELD] > 0.0 else 0
-        if held[k] != 0:
-            note_beside(dyn, scratch, contacts, k, contacts.place[k, ROW])
-    find_changes(contacts, contacts.compliance, held, count)
-    other = contacts.sticks.lam[1]
-    for r in range(lam.shape[0]):
-        other[r] = lam[r]
-    return _agree(dyn, scratch, contacts, sliding, True, other)

@@ -4,45 +4,69 @@ One set of rows holds them, which says nothing of what each carries: where a bal
 slider that sticks in its guide, any of the three may stick less. Of all forces that keep them at rest those are found
 that need the smallest part s of what Coulomb's law allows (events/laws/least_part.py); limits of joints depend on
 reactions, so it is done again until both agree. They hold while s <= 1, whatever rows hold them.
+
+Guards of joints that stick:
+
+slides    its speed, sign kept
+sticks    its limit less |T|; where what is at rest shares its forces  1 - s  of all of it, times the largest load
 """
 
 from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import apart, internal
+from mbsd.compiling.jit import apart, internal, lazy
 from mbsd.dynamics.events.arrays import (
     ALONE,
+    APART,
     CLOSED,
     FOUND,
     FRICTION,
     HELD,
     KIND,
     KINETIC,
+    LEFT,
+    LIMIT,
+    LOAD,
     RESTING,
     ROW,
+    SHARED,
+    SHARING,
     SIGN,
+    SLIDE,
     STATIC,
+    TOGETHER,
     UNSHARED,
+    VALUE,
     WAY,
 )
+from mbsd.dynamics.events.friction import holds
 from mbsd.dynamics.events.laws import least_part as least
+from mbsd.dynamics.events.laws.division import divide
 from mbsd.dynamics.events.laws.least_part import AGREED_TOGETHER, PULLED, least_part
-from mbsd.dynamics.events.rows import gaps_of, hold_rows, release_rows
+from mbsd.dynamics.events.rows import find_answers, gaps_of, hold_rows, release_rows
 from mbsd.dynamics.events.sticking.sharing import (
-    PASSES,
     add_beside,
     add_beside_lam,
+    answer_resting,
     factor,
-    find_answers,
     find_changes,
+    find_moved,
     limit_of,
     note_beside,
     press_beside,
 )
+from mbsd.dynamics.formulation import along, measure
+from mbsd.dynamics.state import TIME
 from mbsd.equations.joint_friction import normal_forces
 
 RAW, UNIT, OWN, FORCE = least.RAW, least.UNIT, least.OWN, least.FORCE
+PASSES = 100
+"""Passes in which all that is at rest agrees on how it shares its friction, at most."""
+AGREED = 1e-12
+"""Part of the largest friction that may still change, of joints alone."""
+ROUNDING = 1e-10
+"""Rounding of forces, as part of the largest."""
 
 
 @internal
@@ -73,7 +97,7 @@ def list_rows(contacts, flags, coefficient):
 
 
 @internal
-def _begin(dyn, scratch, contacts, flags):
+def _begin_together(dyn, scratch, contacts, flags):
     """Fill ``flags`` (c,) with closed gaps and ways at rest, with answers, also of ways that slide."""
     friction = contacts.friction
     gaps = gaps_of(contacts)
@@ -88,6 +112,14 @@ def _begin(dyn, scratch, contacts, flags):
     for w in range(friction.gap.shape[0]):
         if contacts.number[gaps + w, CLOSED] == 0.0:
             flags[gaps + w] = 0
+
+
+@internal
+def _begin_joints(dyn, scratch, contacts, flags):
+    """Fill ``flags`` (c,) with joints at rest, with answers where contacts hold and react."""
+    for k in range(flags.shape[0]):
+        flags[k] = 1 if contacts.place[k, KIND] == WAY and contacts.number[k, CLOSED] > 0.0 else 0
+    answer_resting(dyn, scratch, contacts, flags)
 
 
 @internal
@@ -145,7 +177,33 @@ def _fill_multipliers(contacts, lam, before, n, beside):
 
 
 @internal
-def _agree(dyn, scratch, contacts, c, k, beside, lam):
+def _divide(contacts, c, k, together, slides):
+    """Fill number[FORCE] with what becomes of number[RAW]; returns the part s of their limits that all need.
+
+    ``together``: contacts and joints; else joints alone, which contacts press while some of these slide if ``slides``.
+    """
+    work = contacts.sticks.together
+    if together:
+        return least_part(work, c, k, 1.0)
+    flags = contacts.chosen[RESTING]
+    shared = contacts.sticks.vector[SHARED]
+    held = contacts.sticks.vector[LEFT]
+    limit = contacts.sticks.vector[LIMIT]
+    for i in range(k):
+        shared[work.row[i]] = work.number[RAW, i]
+        held[work.row[i]] = work.number[RAW, i]
+        limit[work.row[i]] = work.number[OWN, i]
+    moved = contacts.friction.compliance if slides else contacts.compliance
+    part = divide(moved, flags, shared, limit, contacts.sticks.division)
+    if slides:
+        part = divide(contacts.compliance, flags, held, limit, contacts.sticks.division)
+    for i in range(k):
+        work.number[FORCE, i] = shared[work.row[i]]
+    return part
+
+
+@internal
+def _agree(dyn, scratch, contacts, c, k, together, slides, beside, lam):
     """Divide again until limits agree, under the friction ``beside`` of joints that slide; returns s.
 
     lam (m,) begins with what presses joints at first.
@@ -163,21 +221,21 @@ def _agree(dyn, scratch, contacts, c, k, beside, lam):
             row = work.row[i]
             if contacts.place[row, KIND] == WAY:
                 work.number[OWN, i - c] = limit_of(dyn, contacts.place[row, FRICTION], normal)
-        part = least_part(work, c, k, 1.0)
+        part = _divide(contacts, c, k, together, slides)
         change = 0.0
         largest = 0.0
         for i in range(c + k):
             change = max(change, abs(work.number[FORCE, i] + lam[contacts.place[work.row[i], ROW]]))
             largest = max(largest, abs(work.number[FORCE, i]))
         _fill_multipliers(contacts, lam, before, c + k, beside)
-        if part == PULLED or change <= AGREED_TOGETHER * largest:
+        if part == PULLED or change <= (AGREED_TOGETHER if together else AGREED) * largest:
             break
     return part
 
 
 @apart
-def carry_together(dyn, scratch, contacts, v, lam, asked):
-    """Divide the multipliers lam (m,) among all that is at rest, at the pose of scratch.ws.
+def carry(dyn, scratch, contacts, v, lam, asked):
+    """Divide the multipliers lam (m,) among what is at rest, as SHARING says, at the pose of scratch.ws.
 
     Returns the part s of their limits that they need, PULLED where contacts would have to pull; if it is ``asked`` for,
     under the friction of joints that slide at velocities v (3 nb,).
@@ -185,14 +243,19 @@ def carry_together(dyn, scratch, contacts, v, lam, asked):
     flags = contacts.chosen[RESTING]
     work = contacts.sticks.together
     before = contacts.sticks.lam[0]
-    _begin(dyn, scratch, contacts, flags)
+    together = contacts.clock[SHARING] == TOGETHER
+    if together:
+        _begin_together(dyn, scratch, contacts, flags)
+    else:
+        _begin_joints(dyn, scratch, contacts, flags)
     c, k = list_rows(contacts, flags, STATIC)
     hold_rows(dyn, contacts)
+    slides = not together and find_moved(dyn, contacts, flags)
     _fill(contacts, lam, c + k)
     for r in range(lam.shape[0]):
         before[r] = lam[r]
-    part = _agree(dyn, scratch, contacts, c, k, False, lam)
-    if not asked or not press_beside(dyn, scratch, contacts, v, before, False):
+    part = _agree(dyn, scratch, contacts, c, k, together, slides, False, lam)
+    if not asked or not press_beside(dyn, scratch, contacts, v, before, not together):
         return part
     for i in range(c + k):
         if work.held[i] != 0:
@@ -201,7 +264,7 @@ def carry_together(dyn, scratch, contacts, v, lam, asked):
     other = contacts.sticks.lam[1]
     for r in range(lam.shape[0]):
         other[r] = lam[r]
-    return _agree(dyn, scratch, contacts, c, k, True, other)
+    return _agree(dyn, scratch, contacts, c, k, together, slides, True, other)
 
 
 @internal
@@ -220,3 +283,65 @@ def divide_together(contacts, flags, force, limit, coefficient):
     if least_part(work, c, k, 1.0) != PULLED:
         for i in range(c + k):
             force[work.row[i]] = work.number[FORCE, i]
+
+
+@lazy(None)
+def read_ways(dyn, scratch, contacts, y, forces):
+    """Fill vector[VALUE] of ways at a state y (2, 3 nb) at which contacts.lam are the multipliers, if ``forces``."""
+    normal = contacts.sticks.normal[FOUND]
+    resting = -1
+    sharing = contacts.clock[SHARING]
+    if forces:
+        normal_forces(dyn.loads, scratch.ws, scratch.ws.jac, contacts.lam, normal)
+    for k in range(contacts.place.shape[0]):
+        if contacts.place[k, KIND] == SLIDE and sharing == TOGETHER and contacts.number[k, CLOSED] > 0.0:
+            contacts.vector[VALUE, k] = contacts.clock[LOAD]
+        if contacts.place[k, KIND] != WAY:
+            continue
+        row = contacts.place[k, ROW]
+        if not holds(dyn, contacts, k):
+            contacts.vector[VALUE, k] = contacts.clock[LOAD]
+            continue
+        if contacts.number[k, CLOSED] == 0.0:
+            contacts.vector[VALUE, k] = contacts.number[k, SIGN] * along(dyn, scratch, row, y[1])
+            continue
+        contacts.vector[VALUE, k] = contacts.clock[LOAD]
+        if forces and sharing == APART:
+            limit = limit_of(dyn, contacts.place[k, FRICTION], normal)
+            contacts.vector[VALUE, k] = limit - abs(contacts.lam[row])
+        if resting < 0:
+            resting = k
+    if forces and sharing != APART:
+        part = carry(dyn, scratch, contacts, y[1], contacts.lam, True)
+        for k in range(contacts.place.shape[0]):
+            if resting < 0 and contacts.place[k, KIND] == SLIDE and contacts.number[k, CLOSED] > 0.0:
+                resting = k
+            if k < gaps_of(contacts) and contacts.number[k, CLOSED] > 0.0:
+                push = -contacts.lam[contacts.place[k, ROW]]
+                pulls = part == PULLED and push < ROUNDING * contacts.clock[LOAD]
+                contacts.vector[VALUE, k] = -contacts.clock[LOAD] if pulls else push
+        contacts.vector[VALUE, resting] = (1.0 - min(part, 2.0)) * contacts.clock[LOAD]
+
+
+@lazy(None)
+def share_outputs(dyn, scratch, contacts, out, first, end):
+    """Divide the friction of joints at rest in outputs ``first`` to ``end`` (left out)."""
+    for k in range(first, end):
+        measure(dyn, scratch, out.t[k], out.y[k, 0])
+        carry(dyn, scratch, contacts, out.y[k, 1], out.lam[k], False)
+
+
+@internal
+def share_here(dyn, scratch, contacts, state):
+    """Put the multipliers of a state whose derivative is valid in contacts.lam, divided among what is at rest."""
+    for r in range(state.lam.shape[0]):
+        contacts.lam[r] = state.lam[r]
+    if contacts.clock[SHARING] != APART:
+        share_state(dyn, scratch, contacts, state)
+
+
+@lazy(None)
+def share_state(dyn, scratch, contacts, state):
+    """Divide contacts.lam, the multipliers of a state."""
+    measure(dyn, scratch, state.clock[TIME], state.y[0])
+    carry(dyn, scratch, contacts, state.y[1], contacts.lam, False)

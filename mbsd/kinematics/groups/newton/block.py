@@ -48,7 +48,7 @@ from mbsd.kinematics.newton import (
 )
 
 COLUMNS = LARGEST * LARGEST
-"""Where the columns of unknowns begin in the scratch, after the matrix."""
+"""Start of the columns of unknowns in the scratch, after the matrix."""
 
 
 @merged

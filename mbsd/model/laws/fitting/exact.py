@@ -309,7 +309,7 @@ def _refined(
             check_derivatives(*failing, peak)
             raise ModelError(
                 f"function: the law with its derivatives does not settle near t = {failing[0][0, 0]:.6g} s, after "
-                f"{MOST_TIMES} times: it scatters, or what it does is too short; give a shorter span, or breaks="
+                f"{MOST_TIMES} times: it scatters, or a feature of it is too short. Give a shorter span, or breaks="
             )
         keep = met | narrow
         done.append([part[keep] for part in (at, left, right, stretch)])

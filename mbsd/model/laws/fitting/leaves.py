@@ -28,7 +28,7 @@ ROOTS = 16
 STUB = 0.25
 """A first piece shorter than this part of the usual ones is joined with its neighbour."""
 BESIDE = 1e-13
-"""How far (of the span) a law is evaluated from a break that its author gave."""
+"""Distance (of the span) from a break of its author at which a law is evaluated."""
 CLOSE = 64
 """Neighbouring numbers within which a law is not looked at."""
 
@@ -248,8 +248,8 @@ class Tree:
             self.scatter_at = float(begin[np.argmax(tail)])
             if not self.load:
                 raise ModelError(
-                    f"function: the law is not smooth: it scatters by {self.scatter:.2g} or has corners all along, and "
-                    "f'' does not follow from that: give its derivatives df and ddf, or smooth it with recorded(...)"
+                    f"function: the law is not smooth: it scatters by {self.scatter:.2g} or has corners all along, so "
+                    "f'' cannot be found. Give its derivatives df and ddf, or smooth it with recorded(...)"
                 )
         self.before = level
 
@@ -291,7 +291,7 @@ def check_jump(at: float, jump: float, allowed: float) -> None:
     if abs(jump) > allowed:
         raise ModelError(
             f"function: the law jumps by {jump:.4g} at t = {at:.7g} s; a driver would need an infinite acceleration "
-            "there: let it rise within a short time, as cycloidal(...) does"
+            "there. Let it rise within a short time, as cycloidal(...) does"
         )
 
 
@@ -299,6 +299,6 @@ def check_kink(at: float, kink: float, allowed: float) -> None:
     """Raise ModelError for a jump of f' that a driver cannot follow."""
     if abs(kink) > allowed:
         raise ModelError(
-            f"function: the law is not smooth: its rate jumps by {kink:.4g} at t = {at:.7g} s, which asks a driver for "
-            "an infinite acceleration: round the corner, or use cycloidal(...), table(...) or recorded(...)"
+            f"function: the law is not smooth: its rate jumps by {kink:.4g} at t = {at:.7g} s, which needs an "
+            "infinite acceleration of a driver. Round the corner, or use cycloidal(...), table(...) or recorded(...)"
         )

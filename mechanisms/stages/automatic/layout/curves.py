@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from manifold3d import CrossSection, JoinType
 from scipy.interpolate import CubicSpline
 
-if TYPE_CHECKING:
-    from mbsd.model.body import Marker
-    from mbsd.model.laws.curve import Curve
-    from mechanisms.stages.automatic.layout.layout import Layout
-
+from mbsd.model.body import Marker
+from mbsd.model.laws.curve import Curve
+from mechanisms.stages.automatic.layout.layout import Layout
 
 # Surfaces of the model as places in the plane: curves through points, and profiles y(x).
 
@@ -26,8 +23,10 @@ FINE = 240
 
 
 def curve_path(points: Sequence[Sequence[float]], closed: bool) -> np.ndarray:
-    """Return (n, 2) places (m) of the smooth curve through ``points``, in the axes of its marker: so many that chords
-    stray from the curve by STRAY of its size at most, and no more than MOST in each of its polynomials.
+    """Return (n, 2) places (m) of the smooth curve through ``points``, in the axes of its marker.
+
+    There are so many that chords stray from the curve by STRAY of its size at most, and no more than MOST in each of
+    its polynomials.
     """
     from mbsd.model.plane_curves import curve_pieces
 
@@ -53,8 +52,13 @@ def profile_path(profile: Curve, first: float, last: float) -> np.ndarray:
 
 def on_body(path: np.ndarray, marker: Marker, layout: Layout) -> np.ndarray:
     """Return places (n, 2) in the axes of a marker (m) in those of its body (rmm)."""
+    return layout.sizes.of_metres(1.0) * path @ axes_of(marker) + layout.place(marker)
+
+
+def axes_of(marker: Marker) -> np.ndarray:
+    """Return (2, 2) unit vectors along a marker's axes in its body's: a matrix that turns rows."""
     c, s = math.cos(marker.angle), math.sin(marker.angle)
-    return layout.sizes.of_metres(1.0) * path @ np.array([[c, s], [-s, c]]) + layout.place(marker)
+    return np.array([[c, s], [-s, c]])
 
 
 def farthest(points: Sequence[Sequence[float]]) -> float:
@@ -68,7 +72,7 @@ def turns_left(path: np.ndarray) -> bool:
 
 
 def set_back(path: np.ndarray, by: float) -> np.ndarray:
-    """Return a closed path (n, 2) moved to its right by so much (rmm), without the loops that sharp corners would make.
+    """Return a closed path (n, 2) moved to its right by so much (rmm), without loops at sharp corners.
 
     (0, 2) where nothing is left of what it goes round.
     """
@@ -98,19 +102,20 @@ BESIDE = 3.0
 
 
 def end_ways(points: Sequence[Sequence[float]], marker: Marker) -> np.ndarray:
-    """Return (2, 2) unit vectors out of the first and out of the last end of the open curve through ``points``, in the
-    axes of the marker's body.
+    """Return (2, 2) unit vectors out of both ends of the open curve through ``points``.
+
+    They are in the axes of the marker's body, the first end's first.
     """
     from mbsd.model import plane_curves
 
     ways = plane_curves.end_ways(*plane_curves.curve_pieces(np.array(points, dtype=float), False))
-    c, s = math.cos(marker.angle), math.sin(marker.angle)
-    return ways @ np.array([[c, s], [-s, c]])
+    return ways @ axes_of(marker)
 
 
 def continued(path: np.ndarray, ways: np.ndarray, ahead: float, step: float) -> tuple[np.ndarray, int]:
-    """Return a path (n, 2) with straight lines ``ahead`` long beyond both ends, at places every ``step``; and how many
-    places lie before it. ``ways``: as of :func:`end_ways`.
+    """Return a path (n, 2) with straight lines beyond both ends, and how many places lie before it.
+
+    The lines are ``ahead`` long, with places every ``step``. ``ways``: as of :func:`end_ways`.
     """
     count = int(ahead / step) + 2
     along = step * np.arange(1, count + 1)[:, None]
@@ -118,8 +123,9 @@ def continued(path: np.ndarray, ways: np.ndarray, ahead: float, step: float) -> 
 
 
 def followed(path: np.ndarray, seen: np.ndarray, closed: bool) -> np.ndarray:
-    """Return (T,) numbers of the places of a path (n, 2) that a point at ``seen`` (T, 2) is nearest to, on the branch
-    that it follows. Round a closed path, whose last place is its first, the numbers go on.
+    """Return (T,) numbers of the places of a path (n, 2) that a point at ``seen`` (T, 2) is nearest to.
+
+    Only the branch that it follows counts. Round a closed path, whose last place is its first, the numbers go on.
 
     Where a path crosses itself the nearest place may be one of the other branch.
     """
@@ -135,7 +141,7 @@ def followed(path: np.ndarray, seen: np.ndarray, closed: bool) -> np.ndarray:
 
 
 def evenly(path: np.ndarray, count: int) -> np.ndarray:
-    """Return (count, 2) places on the spline through a path, with nearly the same way from each to the next.
+    """Return (count, 2) places on the spline through a path, nearly evenly along it.
 
     Chords would take from the pin's clearance where the curve bends.
     """

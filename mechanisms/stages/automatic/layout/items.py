@@ -1,9 +1,10 @@
-"""Items that take room: a shape in the plane that moves with a body, and the heights that it reaches through."""
+"""Items that take room: a shape in the plane that moves with a body, and the heights it reaches."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 from mechanisms.stages.automatic.layout.planar import Rounded
 
@@ -54,24 +55,23 @@ class Reach:
     high: int = 0
     base: bool = False
     top: bool = False
+    choice: ClassVar[None] = None
+    """Name of the choice that decides between several ends; here there is one pair."""
 
     @property
-    def ends(self) -> dict[str | None, tuple[Ends, ...]]:
-        """By the choice that decides between them."""
-        return {None: ((None if self.base else self.low, None if self.top else self.high),)}
+    def ends(self) -> tuple[Ends, ...]:
+        """Both ends, of each choice in turn."""
+        return ((None if self.base else self.low, None if self.top else self.high),)
 
 
 @dataclass(frozen=True)
 class PinReach:
-    """A pin between the plates of ``bodies``, with an end above the highest (``choice`` 0) or under the lowest (1)."""
+    """A pin between the plates of ``bodies``: its end is above them (``choice`` 0) or below (1)."""
 
     bodies: tuple[str, ...]
     choice: str
 
-    @property
-    def ends(self) -> dict[str | None, tuple[Ends, ...]]:
-        """As :attr:`Reach.ends`."""
-        return {self.choice: ((1, 1), (-1, -1))}
+    ends: ClassVar[tuple[Ends, ...]] = ((1, 1), (-1, -1))
 
 
 @dataclass(frozen=True)
@@ -87,9 +87,9 @@ class PivotReach:
     flush: bool = False
 
     @property
-    def ends(self) -> dict[str | None, tuple[Ends, ...]]:
-        """As :attr:`Reach.ends`."""
-        return {self.choice: ((None, 0 if self.flush else 1), (-1, None))}
+    def ends(self) -> tuple[Ends, ...]:
+        """Ends of a pin that stands, and of one that hangs."""
+        return (None, 0 if self.flush else 1), (-1, None)
 
 
 type AnyReach = Reach | PinReach | PivotReach
@@ -97,7 +97,10 @@ type AnyReach = Reach | PinReach | PivotReach
 
 @dataclass(frozen=True, eq=False)
 class Item:
-    """One thing that takes room. ``what`` names it in messages; bodies in ``spares`` may pass through it by design."""
+    """One thing that takes room. ``what`` names it in messages.
+
+    Bodies in ``spares`` may pass through it by design.
+    """
 
     what: str
     body: str
@@ -116,25 +119,22 @@ class Item:
     """A word for what stands on ground; what has another such word must keep clear of it."""
 
 
-def choice_of(reach: AnyReach) -> str | None:
-    """Return the choice that an item's heights depend on, if there is one."""
-    return next(iter(reach.ends))
-
-
 def spans_meet(a: tuple[int, int] | None, b: tuple[int, int] | None) -> bool:
     """Return True if two spans share a half layer."""
     return a is not None and b is not None and a[0] <= b[1] and b[0] <= a[1]
 
 
 def span(reach: AnyReach, levels: Levels) -> tuple[int, int] | None:
-    """Return the lowest and highest half layer, as far as layers are decided: more decided ones only make it longer.
+    """Return the lowest and highest half layer, as far as layers are decided.
+
+    More decided layers only make it longer.
 
     While a choice is open: what both have in common.
     """
-    ((choice, ends),) = reach.ends.items()
-    chosen = levels.get(choice) if choice is not None else 0
+    chosen = levels.get(reach.choice) if reach.choice is not None else 0
     known = [2 * levels[body] for body in reach.bodies if body in levels]
-    spans = [_placed(low, high, known) for low, high in (ends if chosen is None else ends[chosen : chosen + 1])]
+    ends = reach.ends if chosen is None else reach.ends[chosen : chosen + 1]
+    spans = [_placed(low, high, known) for low, high in ends]
     if any(span is None for span in spans):
         return None
     low, high = max(span[0] for span in spans if span), min(span[1] for span in spans if span)
@@ -174,6 +174,12 @@ class Heights:
     def top(self, body: str) -> float:
         """Return the upper face of a body's plate."""
         return self.bottom(body) + self.thickness
+
+    def between(self, first: str, second: str, from_first: float, from_second: float) -> tuple[float, float]:
+        """Return the range between two plates, less a gap to each of them."""
+        if self.bottom(first) < self.bottom(second):
+            return self.top(first) + from_first, self.bottom(second) - from_second
+        return self.top(second) + from_second, self.bottom(first) - from_first
 
 
 def heights(

@@ -9,7 +9,7 @@ from itertools import pairwise
 from pysat.card import ITotalizer
 from pysat.solvers import Solver
 
-from mechanisms.stages.automatic.layout.items import BASE, AnyReach, Ends, Item, PivotReach, Reach, choice_of
+from mechanisms.stages.automatic.layout.items import BASE, AnyReach, Ends, Item, PivotReach, Reach
 
 # The rules of the layers as clauses for a satisfiability solver.
 #
@@ -24,7 +24,9 @@ TRUE = 1
 
 
 class Clauses:
-    """Variables for the layers (below ``count``) of bodies, by the first one where several share a layer; for choices.
+    """Variables for choices and for the layers of bodies, below ``count``.
+
+    Bodies that share a layer have those of the first one.
 
     Ask :meth:`solved`, then read the model by :meth:`layer` and :meth:`chosen`.
     """
@@ -59,7 +61,10 @@ class Clauses:
         return self.steps[self.heads[body]][level - 1] if level < self.count else -TRUE
 
     def above(self, low: str | None, high: str | None, by: int) -> int:
-        """Return a literal that implies that ``high`` is ``by`` layers above ``low``; None is a body on layer 0."""
+        """Return a literal that implies that ``high`` is ``by`` layers above ``low``.
+
+        None is a body on layer 0.
+        """
         if low is None or high is None:
             if low is high:
                 return TRUE if by <= 0 else -TRUE
@@ -108,12 +113,11 @@ class Clauses:
 
     def _ends(self, reach: AnyReach) -> list[tuple[list[int], Ends]]:
         """Return ends of an item, each with literals of which one is true where the choice is another."""
-        ((choice, ends),) = reach.ends.items()
-        if choice is None:
+        if reach.choice is None:
             # without bodies an item with a base is on the base
-            return [([], ends[0] if self._layered(reach) else (None, BASE))]
-        literal = self.choices[choice]
-        return [([literal], ends[0]), ([-literal], ends[1])]
+            return [([], reach.ends[0] if self._layered(reach) else (None, BASE))]
+        literal = self.choices[reach.choice]
+        return [([literal], reach.ends[0]), ([-literal], reach.ends[1])]
 
     def _layered(self, reach: AnyReach) -> tuple[str, ...]:
         """Return the bodies of an item that have a layer."""
@@ -123,10 +127,10 @@ class Clauses:
         """Return literals that are true for every step from a layer to the next that a pin goes through."""
         literals: list[int] = []
         for item in items:
-            ((choice, ends),) = item.reach.ends.items()
+            choice, (low, high) = item.reach.choice, item.reach.ends[0]
             bodies = tuple(dict.fromkeys(self.heads[body] for body in self._layered(item.reach)))
-            if ends[0][0] is not None:
-                literals += [] if ends[0][1] is None else self._crossed(bodies, bodies, [])
+            if low is not None:
+                literals += [] if high is None else self._crossed(bodies, bodies, [])
                 continue
             given = [] if choice is None else [self.choices[choice]]
             literals += self._crossed((None,), bodies, given)
@@ -135,7 +139,10 @@ class Clauses:
         return literals
 
     def _crossed(self, lows: Sequence[str | None], highs: Sequence[str | None], given: Sequence[int]) -> list[int]:
-        """Return the span from the lowest to the highest of bodies; None is what is below, or above, all of them."""
+        """Return the span from the lowest to the highest of bodies.
+
+        None is what is below, or above, all of them.
+        """
         if lows == highs and len(lows) < 2:
             return []
         literals = [self.new() for _ in range(self.count - 1)]
@@ -189,7 +196,7 @@ class Clauses:
 
 def choices_of(items: Sequence[Item]) -> list[str]:
     """Return the choices of items, without repeats."""
-    return list(dict.fromkeys(c for item in items if (c := choice_of(item.reach)) is not None))
+    return list(dict.fromkeys(c for item in items if (c := item.reach.choice) is not None))
 
 
 # The budget of the search for layers, in conflicts of the solver: no clock, so it ends the same everywhere.
@@ -266,8 +273,8 @@ class Problem:
 
     @property
     def most(self) -> int:
-        """So many layers are enough for every order: each a step above the last, as high as items need at most."""
-        ends = [pair for item in self.items for both in item.reach.ends.values() for pair in both]
+        """So many layers are enough: each a step above the last, as high as items need at most."""
+        ends = [pair for item in self.items for pair in item.reach.ends]
         lowest = min((low for low, _ in ends if low is not None), default=0)
         highest = max((high for _, high in ends if high is not None), default=0)
         step = max((highest - lowest) // 2 + 1, 1)
@@ -275,8 +282,9 @@ class Problem:
         return 1 + step * (len(set(self.heads.values())) - 1) + fixed
 
     def clauses(self, count: int, keys: Sequence[Hashable] = ()) -> Clauses:
-        """Return all rules with ``count`` layers; ``keys`` gives each conflict one, and only those assumed by it
-        count.
+        """Return all rules with ``count`` layers.
+
+        ``keys`` gives each conflict one, and only those assumed by it count.
         """
         made = Clauses(self.heads, choices_of(self.items), count)
         for body, level in self.fixed.items():
@@ -322,8 +330,9 @@ class Problem:
 
 
 def find_layers(problem: Problem, purse: Purse | None = None) -> dict[str, int] | None:
-    """Return the layer of each body, from 0 up, and the choices; None where there is no order, with any number of
-    layers.
+    """Return the layer of each body, from 0 up, and the choices.
+
+    None where there is no order, with any number of layers.
 
     Raises Undecided where the purse, a new one if none is given, is empty before that is known.
     """
@@ -366,7 +375,10 @@ def _fewest_bridges(problem: Problem, purse: Purse) -> int | None:
 
 
 def _within(problem: Problem, count: int, bridges: int, budget: int | Purse) -> dict[str, int] | None:
-    """Return the best order with ``count`` layers and as many bridges; None if there is none, or none found."""
+    """Return the best order with ``count`` layers and as many bridges.
+
+    None if there is none, or none found.
+    """
     clauses = problem.clauses(count)
     literals = problem.bridged(clauses)
     if bridges < len(literals):
@@ -410,7 +422,10 @@ def _lower(clauses: Clauses, literals: Sequence[int], purse: int) -> None:
 
 
 def _settle(clauses: Clauses, literals: Sequence[int]) -> None:
-    """Let the first literal be false if it can be, then the next: one model of many is the same everywhere."""
+    """Let the first literal be false if it can be, then the next.
+
+    So one model of many is the same everywhere.
+    """
     for literal in literals:
         if not clauses.holds(literal) or clauses.solved([-literal], BUDGET):
             clauses.add(-literal)
@@ -419,8 +434,9 @@ def _settle(clauses: Clauses, literals: Sequence[int]) -> None:
 
 
 def blocking[Key: Hashable](problem: Problem, keys: Sequence[Key], purse: Purse | None = None) -> list[Key]:
-    """Return keys of conflicts that leave no order; without any one of them there would be one. ``keys``: one per
-    conflict.
+    """Return keys of conflicts that leave no order; without any one of them there would be one.
+
+    ``keys``: one per conflict.
 
     Raises Undecided as :func:`find_layers`.
     """

@@ -3,24 +3,31 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Item, PinReach, Reach, span, spans_meet
+from mbsd import Marker, Mechanism
+from mbsd.model.joint import Joint
+from mechanisms.stages.automatic.layout.items import (
+    BASE,
+    PIVOT,
+    Anchor,
+    Heights,
+    Item,
+    Levels,
+    Need,
+    PinReach,
+    Reach,
+    span,
+    spans_meet,
+)
 from mechanisms.stages.automatic.layout.layers import Problem
 from mechanisms.stages.automatic.layout.planar import Rounded, around, core_gaps, least_gap, placed
-from mechanisms.stages.automatic.layout.sizes import rods_of
-
-if TYPE_CHECKING:
-    from collections.abc import Hashable, Iterable, Mapping
-
-    from mbsd import Marker, Mechanism
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Anchor, Heights, Levels, Need
-    from mechanisms.stages.automatic.layout.sizes import Sizes
+from mechanisms.stages.automatic.layout.sizes import Sizes, rods_of
 
 
 @dataclass(frozen=True)
@@ -123,10 +130,8 @@ class Layout:
 
     def seen(self, body: str, place: tuple[float, float], other: str) -> np.ndarray:
         """Return (T, 2) a place of ``body`` in the frame of another body over the motion (rmm)."""
-        pose, frame = self.poses[body], self.poses[other]
-        c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
-        x = pose[:, 0] + c * place[0] - s * place[1] - frame[:, 0]
-        y = pose[:, 1] + s * place[0] + c * place[1] - frame[:, 1]
+        frame = self.poses[other]
+        x, y = (placed(np.array([place]), self.poses[body])[:, 0] - frame[:, :2]).T
         c, s = np.cos(frame[:, 2]), np.sin(frame[:, 2])
         return np.stack([c * x + s * y, c * y - s * x], axis=1)
 
@@ -212,18 +217,21 @@ class Layout:
         return Problem(self.layered, self.items, self.conflicts, fixed or {}, together, hanging, between)
 
     def with_flush_pivots(self) -> Layout:
-        """Return the same with other pivots, and as they meet the same in the plane, with all that was found of
-        that.
+        """Return the same with pivots that may be flush, and with all that was found of meetings.
+
+        Such pivots meet the same in the plane.
         """
         flushed = replace(self, flush=True, features=list(self.features))
         flushed.__dict__["conflicts"] = self.conflicts
         return flushed
 
     def with_far_posts(self) -> Layout:
-        """Return the same with posts of slotted plates out of the way of what carries their pins, and with flush
-        pivots.
-        """
+        """Return the same with flush pivots, and posts of slotted plates out of the way of carried pins."""
         return replace(self, flush=True, far_posts=True, features=list(self.features))
+
+    def select[F](self, kind: type[F]) -> list[F]:
+        """Return the features of one kind, in their order."""
+        return [feature for feature in self.features if isinstance(feature, kind)]
 
     def is_held(self, pin: object) -> bool:
         """Return True if something stands on a pin."""
@@ -255,8 +263,9 @@ class Layout:
         )
 
     def _are_stepped(self, first: Item, second: Item) -> bool:
-        """Return True if the first is a wheel on a tube, the second its body's plate, another wheel of it, or a pin
-        beside.
+        """Return True if the first is a wheel on a tube that the second must pass.
+
+        The second is its body's plate, another wheel of it, or a pin beside.
         """
         wheels = [wheel for wheel in self.wheels.get(first.body, []) if not wheel.ring]
         if not any(wheel is first.source and wheel.layer == first.what for wheel in wheels):
@@ -266,8 +275,10 @@ class Layout:
         return second.what == second.body or any(w is second.source and w is not first.source for w in wheels)
 
     def is_covered(self, source: object, half_layer: int, levels: Levels, further: int = 0) -> bool:
-        """Return True if something that meets an item of the feature ``source`` in the plane is at a half layer, or up
-        to ``further`` ones from there: what ends in the gap beyond an empty layer may reach into that layer, too.
+        """Return True if something at a half layer meets an item of the feature ``source`` in the plane.
+
+        Up to ``further`` half layers from there count, too: what ends in the gap beyond an empty layer may reach into
+        that layer.
         """
         mine = {k for k, item in enumerate(self.items) if item.source is source}
         others = {j if i in mine else i for i, j in self.conflicts if (i in mine) != (j in mine)}
@@ -275,7 +286,7 @@ class Layout:
         return any(spans_meet(span(self.items[k].reach, levels), looked) for k in others)
 
     def room_below(self, x: float, y: float, levels: Levels) -> float:
-        """Return the distance (rmm) from a place on ground to what moves above the base, under the lowest layer."""
+        """Return the distance (rmm) from a place on ground to what moves below the lowest layer."""
         here, every = np.full((len(self.times), 1, 2), (x, y)), np.arange(len(self.times))
         moving = (i for i in self.items if i.body != "ground" and not i.only and i.what != i.body)
         low = (i for i in moving if spans_meet(span(i.reach, levels), (BASE, BASE)))
@@ -283,7 +294,7 @@ class Layout:
         return min((float(gap.min()) for gap in gaps), default=math.inf)
 
     def room_on_base(self, x: float, y: float) -> float:
-        """Return half of the distance (rmm) from a place on ground to the next place where something stands there."""
+        """Return half of the distance (rmm) from a place on ground to the next thing that stands there."""
         places = [a for feature in self.features for a in feature.anchors(self) if a.body == "ground"]
         away = [math.hypot(a.x - x, a.y - y) for a in places]
         half = min((d for d in away if d > 0.01), default=math.inf) / 2

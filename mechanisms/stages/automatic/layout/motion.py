@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from mbsd import Mechanism, Solution
-    from mbsd.model.joint import Joint
-
+from mbsd import Mechanism, Solution
+from mbsd.model.joint import Joint
 
 # The poses of all bodies over the motion, close enough to each other to look for collisions in the plane.
 
@@ -108,7 +105,7 @@ def _tightest(ends: list[tuple[float, bool]]) -> Limits:
 
 
 def _is_same(stop: Joint, joint: Joint) -> bool:
-    """Return True if both measure the same: from one place and direction of a body to one place of another."""
+    """Return True if both measure from one place and direction of a body to one place of another."""
     return (
         stop.bodies == joint.bodies
         and all(math.dist((a.x, a.y), (b.x, b.y)) < SAME for a, b in ((stop.i, joint.i), (stop.j, joint.j)))

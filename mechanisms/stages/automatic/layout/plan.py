@@ -1,81 +1,44 @@
-"""The plan of the parts: what kinds of joints, forces and contacts put on bodies, with eyes, feet and solids."""
+"""The plan of the parts: the eyes, feet and solids that kinds of joints, forces and contacts add."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import singledispatch
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
+import cadquery as cq
+
+from mechanisms.stages.automatic.layout.items import Heights
+from mechanisms.stages.automatic.layout.layout import Carrier, Feature, Layout
+from mechanisms.stages.automatic.layout.sizes import Kinds
 from shared.contract.parts import Mount
 from shared.shapes.link import Eye
+from shared.shapes.outline import Circle
 from shared.shapes.solid import Solid
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    import cadquery as cq
-
-    from mbsd import Mechanism
-    from mbsd.model.force import Force
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.layout import Carrier, Feature, Layout
-    from shared.shapes.outline import Circle
-
 
 # Features of kinds of joints, forces and contacts, and the registries; the package's docstring says how.
 
-type Gather[Thing] = Callable[[Mechanism, list[Thing], Layout], Sequence[Feature]]
-"""The features of all joints (forces, contacts) of one kind."""
-
-KINDS: dict[str, Gather[Joint]] = {}
-"""By the name of a joint's kind. A joint whose kind is not here has no automatic parts."""
-FORCE_KINDS: dict[str, Gather[Force]] = {}
+KINDS: Kinds[Sequence[Feature]] = Kinds()
+"""By the name of a joint's kind, what returns the features of all its joints. Without it a joint has no parts."""
+FORCE_KINDS: Kinds[Sequence[Feature]] = Kinds()
 """By the name of a force's kind. A force whose kind is not here needs no part."""
-CONTACT_KINDS: dict[str, Gather[Joint]] = {}
+CONTACT_KINDS: Kinds[Sequence[Feature]] = Kinds()
 """By the name of a contact's kind. A contact whose kind is not here needs no part."""
-
-
-DRIVER_KINDS: dict[str, Gather[Joint]] = {}
+DRIVER_KINDS: Kinds[Sequence[Feature]] = Kinds()
 """By the name of a driver's kind. A driver whose kind is not here needs no part: it is what turns a pin, or pushes."""
+kind, force_kind, contact_kind, driver_kind = KINDS.enter, FORCE_KINDS.enter, CONTACT_KINDS.enter, DRIVER_KINDS.enter
+"""Decorators of functions (mechanism, joints, layout) that return features."""
 
 
 @singledispatch
 def build(feature: Any, plan: Plan, heights: Heights) -> None:
-    """Give eyes to the bodies and solids to the plan: as a file of solids has registered, else the feature itself."""
+    """Give eyes to the bodies and solids to the plan.
+
+    A file of solids has registered how, else the feature itself says so.
+    """
     feature.build(plan, heights)
-
-
-def kind(name: str) -> Callable[[Gather[Joint]], Gather[Joint]]:
-    """Enter the features of a kind of joint."""
-    return _enter(KINDS, name)
-
-
-def force_kind(name: str) -> Callable[[Gather[Force]], Gather[Force]]:
-    """Enter the features of a kind of force."""
-    return _enter(FORCE_KINDS, name)
-
-
-def contact_kind(name: str) -> Callable[[Gather[Joint]], Gather[Joint]]:
-    """Enter the features of a kind of contact."""
-    return _enter(CONTACT_KINDS, name)
-
-
-def driver_kind(name: str) -> Callable[[Gather[Joint]], Gather[Joint]]:
-    """Enter the features of a kind of driver."""
-    return _enter(DRIVER_KINDS, name)
-
-
-def _enter[Thing](kinds: dict[str, Gather[Thing]], name: str) -> Callable[[Gather[Thing]], Gather[Thing]]:
-    def enter(gather: Gather[Thing]) -> Gather[Thing]:
-        if name in kinds:
-            raise ValueError(f"{name}: registered twice")
-        kinds[name] = gather
-        return gather
-
-    return enter
 
 
 # The result of all features: eyes of every body, feet on the base, and solids, each with a name of its own.
@@ -159,7 +122,10 @@ class Plan:
         self.eyes.setdefault(body, []).append((x, y, eye))
 
     def plate(self, body: str, shape: cq.Workplane, holds: Circle, through_holes: int = 0) -> None:
-        """Join ``shape`` (z = 0 is the underside) to a body's plate; eyes within the circle ``holds`` need no link."""
+        """Join ``shape`` (z = 0 is the underside) to a body's plate.
+
+        Eyes within the circle ``holds`` need no link.
+        """
         self.plates.setdefault(body, []).append(Plate(shape, holds, through_holes))
 
     def cut(self, body: str, tool: cq.Workplane, through_holes: int) -> None:
@@ -192,8 +158,9 @@ class Plan:
 
 
 def free_name(wish: str, taken: set[str]) -> str:
-    """Return a name of letters, digits and _ that is not ``taken``, and enter it there in lower case: some disks take
-    upper and lower case for one.
+    """Return a name of letters, digits and _ that is not ``taken``, and enter it there.
+
+    It is entered in lower case: some disks take upper and lower case for one.
     """
     name = re.sub(r"\W", "_", wish, flags=re.ASCII)
     name = name if name[:1].isalpha() else f"part_{name}"

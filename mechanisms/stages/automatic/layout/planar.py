@@ -1,17 +1,14 @@
-"""Convex shapes with round corners in the plane, and the least gap of two of them while their bodies move."""
+"""Convex shapes with round corners in the plane, and the least gap of two while their bodies move."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 ON_A_LINE = 1e-9
 """A place that is this near to a line, as a part of their sizes, is on it: no crossing."""
@@ -23,7 +20,9 @@ FLAT = 1.0
 
 @dataclass(frozen=True, eq=False)
 class Rounded:
-    """All points within ``radius`` of a convex ``core`` ((n, 2), counter-clockwise; 1: disc, 2: capsule), rmm.
+    """All points within ``radius`` (rmm) of a convex ``core`` (n, 2), counter-clockwise.
+
+    A core of one point is a disc, of two a capsule.
 
     The core of what changes its shape is (T, n, 2), one for each pose.
     """
@@ -57,8 +56,18 @@ def around(points: Sequence[tuple[float, float]], radius: float) -> Rounded:
     return Rounded(convex_hull(np.array(points, dtype=float)), radius)
 
 
+def box(at: tuple[float, float], along: tuple[float, float], low: float, high: float, half: float) -> Rounded:
+    """Return a rectangle about a line through ``at``, ``low`` to ``high`` along it, ``half`` aside."""
+    u, place = np.array(along), np.array(at)
+    left = np.array([-u[1], u[0]])
+    corners = [place + s * u + q * left for s in (low, high) for q in (-half, half)]
+    return around([(float(p[0]), float(p[1])) for p in corners], 1e-6)
+
+
 def convex_hull(points: np.ndarray, tolerance: float = 1e-9) -> np.ndarray:
-    """Return (m, 2) corners of the convex hull, counter-clockwise, none on a line between two others (monotone chain).
+    """Return (m, 2) corners of the convex hull, counter-clockwise, by a monotone chain.
+
+    No corner is on a line between two others.
 
     ``tolerance``: corners are dropped that with others make triangles of this part of the hull's squared size, as far
     as what is dropped lies within ``FLAT`` of the hull that stays.
@@ -94,8 +103,9 @@ def _plainer(chain: list[tuple[float, float]], area: float) -> list[tuple[float,
 def least_gap(
     first: Rounded, second: Rounded, poses: tuple[np.ndarray, np.ndarray], enough: float
 ) -> tuple[float, int]:
-    """Return the least gap (rmm, negative where they overlap) and the pose it is at; (T, 3) poses x, y, theta of both
-    bodies.
+    """Return the least gap (rmm, negative where they overlap) and the pose it is at.
+
+    (T, 3) poses x, y, theta of both bodies.
 
     A gap above ``enough`` need not be the least one, and for one below it the first that is found will do.
     """
@@ -118,7 +128,10 @@ def least_gap(
 
 
 def core_gaps(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return (T,): distances of two convex polygons of points (T, n, 2) and (T, m, 2); 0 where they overlap."""
+    """Return (T,): distances of two convex polygons of points (T, n, 2) and (T, m, 2).
+
+    0 where they overlap.
+    """
     gaps = np.minimum(_corners_to_edges(a, b), _corners_to_edges(b, a))
     meet = _inside(a[:, 0], b) | _inside(b[:, 0], a) | _cross_each_other(a, b)
     return np.where(meet, 0.0, gaps)
@@ -156,7 +169,7 @@ def _cross_each_other(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _parts(p: np.ndarray, q: np.ndarray, r: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """Return True if the line through p and q has r and s on either side, and neither on it but for rounding."""
+    """Return True if r and s are clearly on either side of the line through p and q."""
     to_r, to_s = _turn(q - p, r - p), _turn(q - p, s - p)
     reach = np.abs(r - p).sum(axis=-1) + np.abs(s - p).sum(axis=-1)
     noise = ON_A_LINE * np.abs(q - p).sum(axis=-1) * reach

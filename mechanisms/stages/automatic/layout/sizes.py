@@ -1,14 +1,21 @@
-"""The size of parts: how far joints reach, lengths that must hold a pin, and the scale that follows (mm)."""
+"""The size of parts: how far joints reach, lengths that must hold a pin, and the scale (mm)."""
 
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from itertools import combinations
+from typing import Any
 
 import numpy as np
 
+from mbsd import Mechanism, Solution
+from mbsd.model.body import Marker
+from mbsd.model.force import Force
+from mbsd.model.joint import Joint
+from mechanisms.stages.automatic.layout.planar import placed
 from mechanisms.stages.loading.wishes import wished_scale
 from mechanisms.stages.parts_files import TOLERANCE
 from shared.shapes.pin import Head, Pivot
@@ -17,14 +24,7 @@ from shared.shapes.standards import CIRCLIPS, Fit, shim_ring
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
 from shared.stage.face import said
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism, Solution
-    from mbsd.model.body import Marker
-    from mbsd.model.force import Force
-    from mbsd.model.joint import Joint
-    from shared.stage.scale import Scale
-
+from shared.stage.scale import Scale
 
 # Lengths from which the scale of the parts follows: the reach of joints, and lengths that must hold a pin's width.
 
@@ -42,6 +42,9 @@ NEAR = 0.02
 """Studs that are nearer to each other, as a part of the whole, are on one place, or do not decide the scale."""
 
 
+type Place = tuple[float, float]
+
+
 @dataclass(frozen=True)
 class Extent:
     """Extent of a joint, contact or force: how far it reaches, and which lengths must hold its parts."""
@@ -52,20 +55,24 @@ class Extent:
     """Lengths of the model (m), each with the least that it may be in rmm."""
 
 
-type ExtentOf = Callable[[Any, Solution], Extent]
-"""Extent of a joint, a contact or a force."""
+class Kinds[Result](dict[str, Callable[..., Result]]):
+    """Functions by the names of the kinds of joints, forces, contacts or drivers that they serve."""
 
-EXTENTS: dict[str, ExtentOf] = {}
+    def enter[Served: Callable[..., Any]](self, name: str) -> Callable[[Served], Served]:
+        """Return a decorator that enters a function for a kind. Raises ValueError for a second one."""
+
+        def entered(function: Served) -> Served:
+            if name in self:
+                raise ValueError(f"{name}: registered twice")
+            self[name] = function
+            return function
+
+        return entered
 
 
-def extent(name: str) -> Callable[[ExtentOf], ExtentOf]:
-    """Enter what joints, contacts or forces of a kind say of their size."""
-
-    def enter(of: ExtentOf) -> ExtentOf:
-        EXTENTS[name] = of
-        return of
-
-    return enter
+EXTENTS: Kinds[Extent] = Kinds()
+"""Functions of a joint, contact or force and the solution that return its extent."""
+extent = EXTENTS.enter
 
 
 @dataclass(frozen=True)
@@ -87,56 +94,50 @@ class Lengths:
 
 def lengths_of(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) -> Lengths:
     """Return lengths of a mechanism and its motion, without bodies that are ``left_out``."""
-    places: dict[str, list[tuple[float, float]]] = {}
-    pinned: dict[str, list[tuple[float, float]]] = {}
-    pins: dict[str, list[str]] = {}
-    studs: dict[str, list[tuple[float, float]]] = {}
+    places, studs = defaultdict[str, list[Place]](list), defaultdict[str, list[Place]](list)
+    pins = defaultdict[str, list[tuple[str, Place]]](list)
     least: list[tuple[float, str, float]] = []
-    for joint in m.joints.values():
-        for marker in (joint.i, joint.j):
-            if marker.body.name in left_out:
-                continue
-            places.setdefault(marker.body.name, []).append((marker.x, marker.y))
-            if joint.kind.pair == "pin" or joint.kind.name == ROD or (joint.kind.pair == "slot" and marker is joint.j):
-                pinned.setdefault(marker.body.name, []).append((marker.x, marker.y))
-                pins.setdefault(marker.body.name, []).append(joint.name)
-    for force in m.forces.values():
-        for marker in (force.i, force.j) if force.kind.journal is not None else ():
-            if marker.body.name not in left_out:
-                places.setdefault(marker.body.name, []).append((marker.x, marker.y))
-                pinned.setdefault(marker.body.name, []).append((marker.x, marker.y))
-                pins.setdefault(marker.body.name, []).append(force.name)
+    for thing in holding(m):
+        pair = getattr(thing.kind, "pair", "pin")  # forces that hold are pins with play
+        for marker in (thing.i, thing.j):
+            body, place = marker.body.name, (marker.x, marker.y)
+            if body not in left_out:
+                places[body].append(place)
+                if pair == "pin" or thing.kind.name == ROD or (pair == "slot" and marker is thing.j):
+                    pins[body].append((thing.name, place))
     for thing in (*m.joints.values(), *m.contacts.values(), *m.forces.values()):
         if thing.kind.name in EXTENTS and not any(body in left_out for body in thing.bodies):
             own = EXTENTS[thing.kind.name](thing, solution)
             least += [(length * LINK / wanted, f"a length of '{thing.name}'", length) for length, wanted in own.least]
             for marker, radius in own.radii:
-                round_it = [(marker.x + radius * u, marker.y + radius * v) for u, v in _ROUND]
-                places.setdefault(marker.body.name, []).extend(round_it)
+                places[marker.body.name] += [(marker.x + radius * u, marker.y + radius * v) for u, v in _ROUND]
     for element in stretching(m, left_out):
         for marker in (element.i, element.j):
-            places.setdefault(marker.body.name, []).append((marker.x, marker.y))
-            studs.setdefault(marker.body.name, []).append((marker.x, marker.y))
-    held = [*m.joints.values(), *(force for force in m.forces.values() if force.kind.journal is not None)]
-    jointed = {name for joint in held for name in joint.bodies}
+            places[marker.body.name].append((marker.x, marker.y))
+            studs[marker.body.name].append((marker.x, marker.y))
+    jointed = {name for thing in holding(m) for name in thing.bodies}
     for name, body in m.bodies.items():
         if name not in (*jointed, *left_out, "ground"):
-            places.setdefault(name, []).append(body.com)
+            places[name].append(body.com)
         if body.length is not None and name not in left_out:
-            places.setdefault(name, []).extend([(0.0, 0.0), (body.length, 0.0)])
+            places[name] += [(0.0, 0.0), (body.length, 0.0)]
     seen = np.concatenate([[[0.0, 0.0]], *[_swept(solution, body, np.array(at)) for body, at in places.items()]])
     overall = float(np.ptp(seen[1:], axis=0).max()) if len(seen) > 1 else 1.0
     apart = [
-        (d := math.dist(at[i], at[k]), f"the distance of '{pins[body][k]}' and '{pins[body][i]}' on '{body}'", d)
-        for body, at in pinned.items()
-        for i in range(len(at))
-        for k in range(i)
+        (d := math.dist(a, b), f"the distance of '{first}' and '{second}' on '{body}'", d)
+        for body, on_it in pins.items()
+        for (first, a), (second, b) in combinations(on_it, 2)
     ]
     for body, at in studs.items():
-        beside = [math.dist(a, b) for i, a in enumerate(at) for b in [*at[:i], *pinned.get(body, [])]]
+        beside = [math.dist(a, b) for i, a in enumerate(at) for b in [*at[:i], *(place for _, place in pins[body])]]
         words = f"the distance of pins or ends of springs on '{body}'"
         least += [(d * LINK / STUD, words, d) for d in beside if d > NEAR * overall]
     return Lengths([length for length in [*apart, *least] if length[0] > 1e-3 * overall], overall)
+
+
+def holding(m: Mechanism) -> list[Joint | Force]:
+    """Return joints, and forces that hold two bodies together as joints do."""
+    return [*m.joints.values(), *(force for force in m.forces.values() if force.kind.journal is not None)]
 
 
 def stretching(m: Mechanism, left_out: Collection[str] = ()) -> list[Force | Joint]:
@@ -154,10 +155,7 @@ def _swept(solution: Solution, body: str, at: np.ndarray) -> np.ndarray:
     if body == "ground":
         return at
     view = solution.body(body)
-    c, s = np.cos(view.theta)[:, None], np.sin(view.theta)[:, None]
-    x = view.x[:, None] + c * at[:, 0] - s * at[:, 1]
-    y = view.y[:, None] + s * at[:, 0] + c * at[:, 1]
-    return np.stack([x.ravel(), y.ravel()], axis=1)
+    return placed(at, np.column_stack([view.x, view.y, view.theta])).reshape(-1, 2)
 
 
 def distance(joint: Joint, solution: Solution) -> float:
@@ -167,8 +165,9 @@ def distance(joint: Joint, solution: Solution) -> float:
 
 
 def rods_of(m: Mechanism, left_out: Collection[str] = ()) -> dict[str, Joint]:
-    """Return rods by name, which is that of the joint, but for joints whose name a body has; without those that lack an
-    end.
+    """Return rods by name, which is that of the joint unless a body has it.
+
+    Rods that lack an end are left out.
     """
     rods: dict[str, Joint] = {}
     for name, joint in m.joints.items():
@@ -263,24 +262,28 @@ class Sizes:
 
     @property
     def tolerance(self) -> float | None:
-        """Largest distance (mm of the finished piece) of meshes from the true surface: in proportion where parts are
-        large, well below the clearance of pins; None: the usual one.
+        """Largest distance (mm of the finished piece) of meshes from the true surface; None: the usual.
+
+        It is in proportion where parts are large, and well below the clearance of pins.
         """
         large = min(self.finished, COARSEST * self.pivot.fit.running * self.finished / TOLERANCE)
         return TOLERANCE * large if large > 1.0 else None
 
     @property
     def screw(self) -> float:
-        """Nominal diameter (mm of the finished piece) of the screws of a pedestal: the standard one next to 3 rmm; 0
-        where all are too thick.
+        """Nominal diameter (mm of the finished piece) of a pedestal's screws; 0 where all are too thick.
+
+        It is the standard one next to 3 rmm.
         """
         nearest = min(SOCKET, key=lambda size: abs(size - 3.0 * self.finished))
         return nearest if nearest <= THICKEST_SCREW * self.finished else 0.0
 
 
 def sizes(shortest: float, overall: float, fit: Fit | None = None, thinnest: float = THINNEST) -> list[Sizes]:
-    """Return sizes from the shortest distance of two joints of one body and the longer side of what all joints sweep
-    (m); then with thinner pins, the last ``thinnest`` times as thick at least.
+    """Return sizes, the most wanted first, then with thinner pins.
+
+    They follow from the shortest distance of two joints of one body and the longer side of what all joints sweep (m).
+    The last pins are ``thinnest`` times as thick at least.
     """
     pin = standard(min(mm(shortest) / LEAST_LINK, mm(overall) / OVERALL))
     thinner = [d for d in reversed(STANDARD) if thinnest * pin <= d < pin]
@@ -288,7 +291,10 @@ def sizes(shortest: float, overall: float, fit: Fit | None = None, thinnest: flo
 
 
 def thin_pins(lengths: Lengths, pin: float) -> str:
-    """Return why pins of ``pin`` mm are much thinner than usual in a machine of this size; empty where they are not."""
+    """Return why pins of ``pin`` mm are much thinner than usual in a machine of this size.
+
+    Empty where they are not.
+    """
     shortest, words, own = lengths.shortest
     usual = standard(mm(lengths.overall) / OVERALL)
     if standard(mm(shortest) / LEAST_LINK) * MUCH_THINNER > usual:
@@ -300,8 +306,9 @@ def thin_pins(lengths: Lengths, pin: float) -> str:
 
 
 def of_pin(diameter: float, fit: Fit | None = None, ratio: float = 1.0) -> Sizes:
-    """Return sizes that go with pins of this diameter (mm), with washers and circlips that one can buy where there are
-    any.
+    """Return sizes that go with pins of this diameter (mm).
+
+    Washers and circlips are those that one can buy where there are any.
 
     ``fit`` in mm; by default what a workshop can make, small or large. Both are those of the finished piece, in the
     ``ratio`` to the machine.
@@ -381,8 +388,9 @@ def printed_fit(pin: float) -> Fit:
 
 
 def fit_at_scale(pin: float) -> Fit:
-    """Return the clearances for a parts.py with pins of this diameter: ``Fit()``, or in a model at a scale what its
-    printer needs. All in mm of the machine.
+    """Return the clearances for a parts.py with pins of this diameter, in mm of the machine.
+
+    They are ``Fit()``, or in a model at a scale what its printer needs.
     """
     scale = wished_scale()
     if scale is None:

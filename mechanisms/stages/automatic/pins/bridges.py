@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import Anchor
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import build
+from mechanisms.stages.automatic.layout.items import Anchor, Heights
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Plan, build
 from mechanisms.stages.automatic.layout.planar import Rounded, core_gaps, placed
 from mechanisms.stages.automatic.pins.pin_solids import FOOT, TOP, run, standing
 from mechanisms.stages.automatic.pins.pins import Pin
@@ -22,12 +21,6 @@ from shared.shapes.build import bore, eased, extruded
 from shared.shapes.pin import pin
 from shared.shapes.solid import placed as placed_solid
 from shared.stage.errors import UserError
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-
 
 # Discs that moving things sweep, in cells of the plane, so that of millions a ray looks at few.
 
@@ -58,9 +51,7 @@ class Swept:
         self._most = np.maximum.reduceat(self._discs[:, 2], self._starts)
 
     def outermost(self, at: np.ndarray, way: np.ndarray) -> np.ndarray:
-        """Return (m, 3): some of the discs, with the one among them that a ray from ``at`` along ``way`` leaves
-        last.
-        """
+        """Return (m, 3) some of the discs, among them the one that a ray along ``way`` leaves last."""
         if self._is_few:
             return self._discs
         seen, half = self._centres - at, CELL / np.sqrt(2.0) + LOOSE
@@ -117,16 +108,17 @@ class Bridge(Feature):
 
 def may_hang(layout: Layout) -> frozenset[str]:
     """Return choices of the pivots that may hang: those on whose pin no spring ends."""
-    pivots = [pin for pin in layout.features if isinstance(pin, Pin) and pin.on_ground]
-    held = [stud.pin for stud in layout.features if isinstance(stud, Stud)]
+    pivots = [pin for pin in layout.select(Pin) if pin.on_ground]
+    held = [stud.pin for stud in layout.select(Stud)]
     return frozenset(pin.choice for pin in pivots if pin not in held)
 
 
 def bridges_over(layout: Layout, levels: Mapping[str, int]) -> list[Feature]:
-    """Return bridges for all pivots that hang by the choices in ``levels``. Raises UserError where a bridge has no
-    place.
+    """Return bridges for all pivots that hang by the choices in ``levels``.
+
+    Raises UserError where a bridge has no place.
     """
-    waiting = [pin for pin in layout.features if isinstance(pin, Pin) and pin.on_ground and levels[pin.choice] == 1]
+    waiting = [pin for pin in layout.select(Pin) if pin.on_ground and levels[pin.choice] == 1]
     points, still = _points(layout, waiting)
     moving = Swept(points)
     bridges: list[Bridge] = []
@@ -145,17 +137,16 @@ def bridges_over(layout: Layout, levels: Mapping[str, int]) -> list[Feature]:
 
 
 def _cost(bridge: Bridge) -> float:
-    """Return the length for each pivot; a hundredth more, the less it lies level, so that of equal ones the level one
-    is taken.
-    """
+    """Return the length of a beam for each pivot, a little more the less it lies level."""
     (x0, y0), (x1, y1) = bridge.ends
     length = math.hypot(x1 - x0, y1 - y0)
     return round(length / len(bridge.pins) * (1.0 + 0.01 * abs(y1 - y0) / length), 6)
 
 
 def _points(layout: Layout, hanging: Sequence[Pin]) -> tuple[np.ndarray, np.ndarray]:
-    """Return (n, 3) each: places that moving items come to, and those of ground, with the gap (rmm) from a post's
-    middle.
+    """Return (n, 3) each: places that moving items come to, and places of ground.
+
+    The third number is the gap (rmm) from a post's middle.
     """
     moving, still = [np.zeros((0, 3))], [np.zeros((0, 3))]
     for item in layout.items:
@@ -194,7 +185,7 @@ def _candidates(waiting: Sequence[Pin], moving: Swept, still: np.ndarray) -> lis
 
 
 def _post(at: np.ndarray, way: np.ndarray, moving: Swept, still: np.ndarray) -> tuple[float, float]:
-    """Return the first place from ``at`` on in a direction that is past all that moves and clear of what stands."""
+    """Return the first place along a ray from ``at`` past all that moves and clear of what stands."""
     outer = moving.outermost(at, way)
     along, aside = _along(outer, at, way)
     inside = np.abs(aside) < outer[:, 2]

@@ -14,6 +14,7 @@ from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Leve
 from mechanisms.stages.automatic.layout.layout import Feature, Layout
 from mechanisms.stages.automatic.layout.plan import Plan
 from mechanisms.stages.automatic.layout.planar import Rounded, disc
+from mechanisms.stages.automatic.layout.sizes import holding
 from mechanisms.stages.automatic.pins.pins import Pin
 from mechanisms.stages.automatic.pins.springs import Stud
 from shared.contract.materials import MATERIALS
@@ -44,8 +45,9 @@ SEEN = 0.05
 
 
 class Face(NamedTuple):
-    """Face of a wheel, in its body's frame (rmm): what lies within ``inner`` is solid and touches nothing; beyond
-    ``outer`` the body may have an arm.
+    """Face of a wheel in its body's frame (rmm): within ``inner`` it is solid and touches nothing.
+
+    Beyond ``outer`` the body may have an arm.
     """
 
     x: float
@@ -79,11 +81,7 @@ class RimMark(Feature):
         """Yield the pointer, over the face of its wheel."""
         if self.points:
             shape = Rounded(np.array([self.at, (self.x, self.y)]), self.radius + BASE)
-            own = frozenset(
-                joint_pin.what
-                for joint_pin in layout.features
-                if isinstance(joint_pin, Pin) and self._is_clear_of(joint_pin)
-            )
+            own = frozenset(joint_pin.what for joint_pin in layout.select(Pin) if self._is_clear_of(joint_pin))
             yield Item(
                 f"the pointer of {self.name}", self.body, shape, Reach((self.body,), 1, 1), source=self, meshes=own,
                 spared=False,
@@ -120,9 +118,7 @@ class RimMark(Feature):
 
 
 def face_at(body: str, x: float, y: float, layout: Layout) -> Face | None:
-    """Return the face of the wheel on whose rim, or beyond whose working surface, an eye at a place of a body would
-    be.
-    """
+    """Return the face of the wheel whose rim or working surface an eye at a place would break."""
     eye = layout.sizes.stylus_eye
     for feature in layout.features:
         face_of = getattr(feature, "face_of", None)
@@ -217,8 +213,7 @@ class FreeBody(Feature):
 def free_bodies(layout: Layout) -> list[Feature]:
     """Return one for each body without a joint or a shape of its own."""
     m = layout.m
-    held = [*m.joints.values(), *(force for force in m.forces.values() if force.kind.journal is not None)]
-    shaped = {body for joint in held for body in joint.bodies}
+    shaped = {body for thing in holding(m) for body in thing.bodies}
     others = [feature for feature in layout.features if not isinstance(feature, Stud)]
     shaped |= {item.body for feature in others for item in feature.items(layout)}
     names = [name for name in layout.bodies if name not in shaped]
@@ -341,11 +336,12 @@ class Weight(Feature):
 
 
 def styluses(layout: Layout, tall: bool, pointers: bool) -> list[Feature]:
-    """Return one for every traced point of a moving body, except where a joint's eye or a weight is, and on balls.
+    """Return a stylus for every traced point of a moving body, except on balls, eyes and weights.
+
     Points on rims get marks there, with ``pointers`` where these are wanted.
     """
     features: list[Feature] = []
-    balls = {feature.body for feature in layout.features if isinstance(feature, FreeBody) and feature.is_ball}
+    balls = {feature.body for feature in layout.select(FreeBody) if feature.is_ball}
     taken = [a for feature in layout.features for a in feature.anchors(layout)]
     for name, marker in layout.m.traces.items():
         body, (x, y) = marker.body.name, layout.place(marker)
@@ -366,13 +362,14 @@ def styluses(layout: Layout, tall: bool, pointers: bool) -> list[Feature]:
 
 
 def weights(layout: Layout, heavy: bool) -> list[Feature]:
-    """Return weights for bars with a free end, and for bodies with one joint, but no wheels or tyres, whose centre of
-    mass is elsewhere.
+    """Return weights for bars with a free end, and for bodies with one joint and their mass elsewhere.
+
+    Wheels and tyres get none.
 
     ``heavy``: only for ends of bars where their centre of mass is, even if they are traced.
     """
     features: list[Feature] = []
-    free = {feature.body for feature in layout.features if isinstance(feature, FreeBody)}
+    free = {feature.body for feature in layout.select(FreeBody)}
     round_bodies = {*layout.wheels, *(body for body, _, _ in layout.rounds)}
     taken = [a for feature in layout.features for a in feature.anchors(layout)]
     for name in layout.bodies:

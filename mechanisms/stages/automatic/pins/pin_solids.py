@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from mechanisms.stages.automatic.layout.plan import BOLT_HOLE, Foot, build
+from mechanisms.stages.automatic.layout.items import Heights, Levels
+from mechanisms.stages.automatic.layout.plan import BOLT_HOLE, Foot, Plan, build
+from mechanisms.stages.automatic.layout.sizes import Sizes
 from mechanisms.stages.automatic.pins.pins import Pin
 from shared.shapes.base import bolt_circle, column, pedestal
 from shared.shapes.build import bore
@@ -13,12 +13,6 @@ from shared.shapes.pin import Head, bushing, pin, washer
 from shared.shapes.screw import socket_screw
 from shared.shapes.solid import Solid, placed
 from shared.shapes.standards import screw_length, screw_name
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
-    from mechanisms.stages.automatic.layout.plan import Plan
-    from mechanisms.stages.automatic.layout.sizes import Sizes
-
 
 # The solids of a pin: what holds it, what runs on it, and what keeps it in place (rmm).
 
@@ -47,8 +41,9 @@ def moving_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> No
 
 
 def hanging_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> None:
-    """A pin pressed into the highest of ``stack``; a circlip keeps it under the lowest. Its head is where there is
-    room.
+    """A pin pressed into the highest of ``stack``; a circlip keeps it under the lowest.
+
+    Its head is where there is room.
     """
     sizes, name = plan.layout.sizes, joint.name
     pivot, fit = sizes.pivot, sizes.pivot.fit
@@ -144,8 +139,9 @@ def standing(
     kind: str = "pedestal",
     levels: Levels | None = None,
 ) -> None:
-    """A pedestal on the base plate, with a flange and screws where there is room for them beside its neighbours and,
-    where ``levels`` are given, beside what moves under the lowest layer.
+    """A pedestal on the base plate, with a flange and screws where there is room beside its neighbours.
+
+    Where ``levels`` are given, what moves under the lowest layer counts as well.
 
     ``label`` is what is engraved beside it, by default its name.
     """
@@ -185,7 +181,7 @@ UNDER = 0.3
 
 
 def flush_pivot(joint: Pin, plan: Plan, heights: Heights) -> None:
-    """A pedestal with a fixed pin whose head is in a counterbore of the one link on it, so that nothing is above it."""
+    """A pedestal with a pin whose head is in a counterbore of its one link: nothing is above it."""
     sizes, name, (body,) = plan.layout.sizes, joint.name, joint.movers
     pivot, fit = sizes.pivot, sizes.pivot.fit
     x, y = joint.places["ground"]

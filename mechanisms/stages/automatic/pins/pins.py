@@ -2,30 +2,35 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations, pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Anchor, Item, Need, PinReach, PivotReach, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
+from mbsd import Mechanism, Solution
+from mbsd.model.force import Force
+from mbsd.model.joint import Joint
+from mechanisms.stages.automatic.layout.items import (
+    BASE,
+    PIVOT,
+    Anchor,
+    Item,
+    Levels,
+    Need,
+    PinReach,
+    PivotReach,
+    Reach,
+)
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
 from mechanisms.stages.automatic.layout.plan import force_kind, kind
 from mechanisms.stages.automatic.layout.planar import disc
 from mechanisms.stages.automatic.layout.sizes import ROD, Extent, extent
+from shared.shapes.bodies import Place
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism, Solution
-    from mbsd.model.force import Force
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Levels
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from shared.shapes.bodies import Place
-
 
 # Rods: distance joints, and what is like a body here. A rod has an eye on the pin at either of its ends.
 #
@@ -152,7 +157,7 @@ class Pin(Feature):
         return [Item(self.what, self.home, shape, ends, on_it, self)]
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Yield the room for washers and flanges between neighbours on the pin, and for its head or circlip on top."""
+        """Yield the room for washers and flanges between neighbours, and for head or circlip on top."""
         sizes, pivot = layout.sizes, layout.sizes.pivot
         running = pivot.fit.axial + pivot.flange_room
         stack = sorted(levels[body] for body in self.movers)
@@ -176,6 +181,16 @@ class Pin(Feature):
             yield Need(levels[wheel.layer], LEAST_COLUMN + pivot.washer_room + running)
         if self.on_ground and not hangs and stack[0] == 0:
             yield Need(BASE, sizes.pedestal + pivot.washer_room + running)
+
+
+def pins_on(layout: Layout, body: str) -> list[Pin]:
+    """Return the pins that go through a body."""
+    return [feature for feature in layout.select(Pin) if body in feature.places]
+
+
+def pins_at(layout: Layout, body: str, place: tuple[float, float]) -> list[Pin]:
+    """Return the pins at a place of a body (rmm)."""
+    return [pin for pin in pins_on(layout, body) if math.dist(pin.places[body], place) < SAME]
 
 
 @kind("revolute")
@@ -233,7 +248,10 @@ THINNEST = 0.4
 
 @force_kind("clearance_joint")
 def gather_with_play(m: Mechanism, forces: list[Force], layout: Layout) -> list[Feature]:
-    """Return a pin each. Raises UserError where play leaves no bushing, or where another pin has the place."""
+    """Return a pin each.
+
+    Raises UserError where play leaves no bushing, or where another pin has the place.
+    """
     pins: list[Feature] = []
     for force in forces:
         places = {marker.body.name: layout.place(marker) for marker in (force.i, force.j)}
@@ -260,16 +278,14 @@ def _play(m: Mechanism, force: Force, layout: Layout) -> float:
 
 
 def _refuse_shared(m: Mechanism, force: Force, places: dict[str, tuple[float, float]], layout: Layout) -> None:
-    for pin in layout.features:
-        for body, (x, y) in places.items():
-            if isinstance(pin, Pin) and body in pin.places:
-                u, v = pin.places[body]
-                if abs(x - u) < SAME and abs(y - v) < SAME:
-                    raise UserError(
-                        f"{m.name}: clearance joint '{force.name}' and '{pin.name}' are at one place of '{body}'; "
-                        "bodies that share a pin have no play of their own in automatic parts; move one of them, or "
-                        f"write {shown_file(m.name, 'parts')}"
-                    )
+    for body, place in places.items():
+        for pin in pins_on(layout, body):
+            if _same(place, pin.places[body]):
+                raise UserError(
+                    f"{m.name}: clearance joint '{force.name}' and '{pin.name}' are at one place of '{body}'; "
+                    "bodies that share a pin have no play of their own in automatic parts; move one of them, or "
+                    f"write {shown_file(m.name, 'parts')}"
+                )
 
 
 # Built-up cranks: a body of two plates, its webs, that the pin between them joins; a link turns on the pin.
@@ -279,12 +295,12 @@ def _refuse_shared(m: Mechanism, force: Force, places: dict[str, tuple[float, fl
 
 
 def webbed(layout: Layout, bodies: Collection[str]) -> Iterable[Layout]:
-    """Yield layouts in which one of ``bodies`` has a further web: each of its pins once as the one that joins both, and
-    the others shared out in every way.
+    """Yield layouts in which one of ``bodies`` has a further web.
+
+    Each of its pins is once the one that joins both, and the others are shared out in every way.
     """
     for body in (body for body in bodies if body in layout.bodies):
-        pins = [pin for pin in layout.features if isinstance(pin, Pin) and body in pin.places]
-        pins.sort(key=lambda pin: not pin.on_ground)
+        pins = sorted(pins_on(layout, body), key=lambda pin: not pin.on_ground)
         free = [pin for pin in pins if not layout.is_held(pin)]
         for joining in free:
             if joining.on_ground or len(joining.places) < 2:

@@ -5,32 +5,24 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import cadquery as cq
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot, build, contact_kind, driver_kind, force_kind
+from mbsd import Mechanism
+from mbsd.model.force import Force
+from mbsd.model.joint import Joint
+from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Levels, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Foot, Plan, build, contact_kind, driver_kind, force_kind
 from mechanisms.stages.automatic.layout.planar import Rounded, disc
 from mechanisms.stages.automatic.layout.sizes import LINEAR, ROPE, stretching
 from mechanisms.stages.automatic.pins.pin_solids import upper_end
-from mechanisms.stages.automatic.pins.pins import SAME, Pin
+from mechanisms.stages.automatic.pins.pins import SAME, Pin, pins_at
 from shared.shapes.base import column
 from shared.shapes.link import Eye
 from shared.shapes.screw import Collar, ball_stud
 from shared.shapes.solid import Hold, Solid, placed
-
-if TYPE_CHECKING:
-    import cadquery as cq
-
-    from mbsd import Mechanism
-    from mbsd.model.force import Force
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-
 
 # Elements that stretch between two points, and the ball studs that hold its ends: in a body's plate, on a post on
 # ground, or on the end of a joint's pin.
@@ -47,7 +39,7 @@ HOOK = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Stretching(Feature):
-    """One spring, damper or actuator: its ends (body, x, y in its frame) and their ways in the world, in rmm."""
+    """One spring, damper or actuator: its ends (body, x, y) and their ways in the world (rmm)."""
 
     force: str
     radius: float
@@ -79,7 +71,7 @@ class Stretching(Feature):
         barrel, ends = self.names
         held = self._studs(layout)
         own = {stud.what for stud in held} | {stud.pin.what for stud in held if stud.pin}
-        others = [f for f in layout.features if isinstance(f, Stretching) and f is not self]
+        others = [f for f in layout.select(Stretching) if f is not self]
         first, last = self.path[:, :1], self.path[:, 1:]
         inner = np.concatenate([first + HOOK * (last - first), last - HOOK * (last - first)], axis=1)
         if self.sags is not None and self.sags.any():
@@ -95,12 +87,12 @@ class Stretching(Feature):
             yield Item(_core(self), self.layer, wide, layer, source=self, only=cores)
 
     def _studs(self, layout: Layout) -> list[Stud]:
-        return [f for f in layout.features if isinstance(f, Stud) and any(spring is self for spring, _ in f.ends)]
+        return [f for f in layout.select(Stud) if any(spring is self for spring, _ in f.ends)]
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """Yield the room for its barrel, beside that of another and above a pin that its end stands on."""
         sizes, level, over = layout.sizes, levels[self.layer], self.over(layout)
-        others = [f for f in layout.features if isinstance(f, Stretching) and f is not self]
+        others = [f for f in layout.select(Stretching) if f is not self]
         pins = [max(levels[body] for body in stud.pin.movers) for stud in self._studs(layout) if stud.pin]
         for gap, next_to in ((level - 1, level - 1), (level, level + 1)):
             beside = [spring.over(layout) for spring in others if levels[spring.layer] == next_to]
@@ -173,8 +165,9 @@ class Stud(Feature):
             yield Item(f"{self.what} from below", self.body, disc(self.x, self.y, EYE), under, spares, self, only=held)
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Yield the room for its collar between its plate and a ball in the next layer; springs and pins ask for the
-        rest.
+        """Yield the room for its collar between its plate and a ball in the next layer.
+
+        Springs and pins ask for the rest.
         """
         if self.pin is not None or self.body == "ground":
             return
@@ -208,8 +201,9 @@ LEAST = 4.0
 
 
 def _sags(path: np.ndarray, length: float, down: tuple[float, float]) -> np.ndarray:
-    """Return (T, 2) twice the sag of a rope of this length (rmm) along ``down``, or more: its parabola is longer than
-    the two straight lines to its vertex, which are as long as the rope here.
+    """Return (T, 2) twice the sag of a rope of this length (rmm) along ``down``, or more.
+
+    Its parabola is longer than the two straight lines to its vertex, which are as long as the rope here.
     """
     strength = float(np.hypot(*down))
     if strength == 0:
@@ -267,22 +261,12 @@ def _is_coil(force: Force | Joint) -> bool:
 @force_kind("gas_cycle")
 @force_kind("gas_strut")
 @force_kind("hydraulic_cylinder")
-def gather(m: Mechanism, forces: list[Force], layout: Layout) -> list[Feature]:
-    """Gather springs of all kinds at the first kind, since they share studs."""
-    return _all_at(forces[0], m, layout)
-
-
 @contact_kind(ROPE)
 @driver_kind(LINEAR)
-def gather_others(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """Gather ropes and linear drivers, in the same way."""
-    return _all_at(joints[0], m, layout)
-
-
-def _all_at(first: Force | Joint, m: Mechanism, layout: Layout) -> list[Feature]:
-    """Return studs first, then what they hold; an empty list except at the first kind."""
+def gather(m: Mechanism, things: Sequence[Force | Joint], layout: Layout) -> list[Feature]:
+    """Return studs, then the springs, ropes and drivers that share them, at the first of these kinds."""
     between = stretching(m, layout.apart)
-    if first is not between[0]:
+    if things[0] is not between[0]:
         return []
     springs = [spring for force in between if (spring := _stretching(force, layout)) is not None]
     layout.springs.names[:] = [spring.force for spring in springs]
@@ -294,11 +278,10 @@ def _all_at(first: Force | Joint, m: Mechanism, layout: Layout) -> list[Feature]
 
 def _studs(springs: Sequence[Stretching], layout: Layout) -> list[Feature]:
     """Gather studs: ends that share a place of a body, or a pin, share one."""
-    pins = [feature for feature in layout.features if isinstance(feature, Pin)]
     places: list[tuple[str, float, float, Pin | None, list[tuple[Stretching, int]]]] = []
     for spring in springs:
         for k, (body, x, y) in enumerate(spring.ends):
-            pin = next((p for p in pins if body in p.places and math.dist(p.places[body], (x, y)) < SAME), None)
+            pin = next(iter(pins_at(layout, body, (x, y))), None)
             if pin is not None:
                 body, (x, y) = pin.home, pin.places[pin.home]
             for place in places:
@@ -368,12 +351,7 @@ def _lines(stud: Stud, heights: Heights) -> list[float]:
 
 
 def _add(
-    stud: Stud,
-    body: str,
-    shape: cq.Workplane,
-    plan: Plan,
-    heights: Heights,
-    at: tuple[float, float] | None = None,
+    stud: Stud, body: str, shape: cq.Workplane, plan: Plan, heights: Heights, at: tuple[float, float] | None = None
 ) -> None:
     x, y = at or (stud.x, stud.y)
     holds = tuple(Hold(spring.force, spring.z(heights), spring.radius) for spring, _ in stud.ends)

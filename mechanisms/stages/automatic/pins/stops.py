@@ -1,4 +1,4 @@
-"""Stops of revolute joints: a stop pin on the second body, and one on the first, or on a post, for each end of the way.
+"""Stops of revolute joints: for each end of the way a stop pin on either body, or on a post.
 
     R    distance of all stop pins from the axis        r    their radius        c    the clearance where they meet
     d    2 R sin(d / 2) = 2 r + c      the angle between two of them that meet
@@ -13,25 +13,19 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd import Mechanism
 from mechanisms.stages.automatic.layout import motion
-from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Anchor, Item, Need, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot
+from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Anchor, Heights, Item, Levels, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Foot, Plan
 from mechanisms.stages.automatic.layout.planar import disc
 from mechanisms.stages.automatic.layout.sizes import CLEAR
 from shared.shapes.link import Eye
 from shared.shapes.pin import pin
 from shared.shapes.solid import placed
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
 
 AWAY, RADIUS, EYE = 17.8, 3.2, 6.2
 """R and r, and the radius of the plate round a stop pin (rmm)."""
@@ -159,8 +153,9 @@ def _given(ends: motion.Limits) -> list[float]:
 
 
 def _way(taken: list[Anchor], axis: Place, layout: Layout) -> float:
-    """Return where the second body has its stop pin (rad): towards a far joint, where its plate is anyway, else where
-    it is farthest from all that is on the body.
+    """Return where the second body has its stop pin (rad).
+
+    Towards a far joint, where its plate is anyway, else where it is farthest from all that is on the body.
     """
     others = np.array([[a.x - axis[0], a.y - axis[1]] for a in taken if math.dist((a.x, a.y), axis) > 0.1])
     if not len(others):

@@ -1,4 +1,4 @@
-"""Welds: two plates, one above the other, on a spacer with two bolts; on ground a block carries the plate.
+"""Welds: two plates on a spacer with two bolts; on ground a block carries the plate.
 
 The bolts are at the weld's place, along its direction. Where pins, slots or other bolts of its bodies are in their way
 they stand across, or farther away: what is welded is one rigid thing, wherever its bolts are.
@@ -9,13 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import BASE, Anchor, Item, Need, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot, kind
+from mbsd import Mechanism
+from mbsd.model.joint import Joint
+from mechanisms.stages.automatic.layout.items import BASE, Anchor, Heights, Item, Levels, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Foot, Plan, kind
 from mechanisms.stages.automatic.layout.planar import around
 from shared.shapes import outline
 from shared.shapes.build import extruded
@@ -24,13 +25,6 @@ from shared.shapes.pin import Head, pin
 from shared.shapes.solid import placed
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
 
 BOLT, HEAD = 5.0, Head(9.0, 3.0, 0.8)
 """Diameter of a bolt (rmm), and its head."""
@@ -123,8 +117,7 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
 
 
 def with_free_bolts(features: Sequence[Feature], layout: Layout) -> list[Feature]:
-    """Return the features, with the bolts of each weld at the nearest place where nothing of its bodies is in their
-    way.
+    """Return the features, with the bolts of each weld at the nearest place that is free on both bodies.
 
     Raises UserError for a weld without such a place.
     """

@@ -5,30 +5,25 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd import Mechanism, Solution
+from mbsd.model.force import Force
+from mbsd.model.joint import Joint
 from mbsd.model.laws.curve import Curve
 from mechanisms.stages.automatic.cams import pushing_cam, pushing_extent, with_room
 from mechanisms.stages.automatic.layout.curves import curve_path, farthest, on_body, profile_path, turns_left
-from mechanisms.stages.automatic.layout.layout import Feature
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
 from mechanisms.stages.automatic.layout.plan import contact_kind, force_kind, kind
 from mechanisms.stages.automatic.layout.sizes import CLEAR, Extent, extent
-from mechanisms.stages.automatic.pins.pins import SAME, Pin
+from mechanisms.stages.automatic.pins.pins import pins_at
 from mechanisms.stages.automatic.rolling.roads import THICK, Road, along
 from mechanisms.stages.automatic.rolling.rounds import Look, Round, round_at
 from mechanisms.stages.automatic.rolling.tracks import circle, rolled_road, touched_path, touched_road, track
 from shared.shapes.outline import distances
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism, Solution
-    from mbsd.model.force import Force
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.layout import Layout
-
 
 # Straight walls on ground from contacts with lines: as long as the way along them, and meeting in mitred corners.
 #
@@ -50,7 +45,7 @@ difference."""
 
 @dataclass(eq=False)
 class Line:
-    """A line on ground (rmm): a place, its direction, and the round parts that it carries with their ways along it."""
+    """A line on ground (rmm): a place, its direction, the round parts on it and their ways along it."""
 
     name: str
     start: np.ndarray
@@ -99,7 +94,10 @@ def roads(lines: Sequence[Line]) -> list[Road]:
 
 
 def _mitre(line: Line, other: Line) -> np.ndarray:
-    """Return (2,) from where two walls meet to where their outer faces meet; square where that would be far."""
+    """Return (2,) from where two walls meet to where their outer faces meet.
+
+    Square where that would be far.
+    """
     cosine = float(line.free @ other.free)
     if math.pi - math.acos(max(-1.0, min(1.0, cosine))) < SHARPEST:
         return -THICK * line.free
@@ -156,7 +154,10 @@ def terrains(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature
 
 @contact_kind("rigid_discs")
 def discs(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature]:
-    """Return two balls or discs of moving bodies, on one layer; rings round discs, and discs on ground, are tracks."""
+    """Return two balls or discs of moving bodies, on one layer.
+
+    Rings round discs, and discs on ground, are tracks.
+    """
     features: list[Feature] = []
     for touch in touches:
         if touch.params["inside"] or "ground" in touch.bodies:
@@ -227,8 +228,9 @@ def _in_ring(m: Mechanism, touch: Joint, layout: Layout) -> list[Feature]:
 def _on_road(
     m: Mechanism, touch: Touch, path: np.ndarray | None, layout: Layout, closed: bool = False
 ) -> list[Feature]:
-    """Return a road on ground, or a track of another body or along a closed curve; without a ``path`` (n, 2) (rmm, the
-    frame of its body) it is along the contact's open curve.
+    """Return a road on ground, or a track of another body or along a closed curve.
+
+    Without a ``path`` (n, 2) (rmm, the frame of its body) it is along the contact's open curve.
     """
     places, radius = _places(touch, layout), layout.sizes.of_metres(touch.params["radius"])
     if path is None:
@@ -285,15 +287,13 @@ def _feet(m: Mechanism, body: str) -> int:
 
 
 def _set_back(touch: Touch, layout: Layout) -> float:
-    """Return how far the surface lies behind that of the model (rmm), because what touches is larger than there."""
+    """Return how far the surface lies behind the model's (rmm), as what touches is larger than there."""
     return max(0.0, _least_radius(touch, layout) - layout.sizes.of_metres(touch.params["radius"]))
 
 
 def _least_radius(touch: Touch, layout: Layout) -> float:
-    """Return the least radius of what touches (rmm): that of a nose, or one that holds the eye of a pin there."""
-    body, place, sizes = touch.j.body.name, layout.place(touch.j), layout.sizes
-    pins = [feature for feature in layout.features if isinstance(feature, Pin) and body in feature.places]
-    is_pinned = any(math.dist(pin.places[body], place) < SAME for pin in pins)
+    """Return the least radius of what touches (rmm): a nose's, or one that holds the eye of a pin."""
+    sizes, is_pinned = layout.sizes, bool(pins_at(layout, touch.j.body.name, layout.place(touch.j)))
     return sizes.eye + CLEAR * sizes.pivot.fit.running + YIELDS if is_pinned else NOSE
 
 

@@ -1,31 +1,24 @@
-"""Roads: strips along lines and curves, the backings that hold them, and roads that several bodies share."""
+"""Roads: strips along lines and curves, what backs them, and roads that several bodies share."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 from manifold3d import CrossSection, FillRule, OpType
 
+from mbsd import Mechanism
 from mechanisms.stages.automatic.layout.curves import area
-from mechanisms.stages.automatic.layout.items import Item, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot
+from mechanisms.stages.automatic.layout.items import Heights, Item, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Foot, Plan
 from mechanisms.stages.automatic.layout.planar import around, convex_hull
+from mechanisms.stages.automatic.rolling.rounds import Round
 from shared.shapes.build import extruded
 from shared.shapes.outline import distances, simplified
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-    from mechanisms.stages.automatic.rolling.rounds import Round
-
 
 # Backings behind the surface of a road: matter down to a straight lower side, or a band along it where that would
 # cross the surface, itself or the way of what runs on it.
@@ -44,7 +37,7 @@ SAME_AREA = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """Matter of even thickness on the right of a surface (rmm): its borders, and convex pieces that cover it."""
+    """Matter of even thickness on the right of a surface (rmm): borders, and convex pieces of it."""
 
     border: np.ndarray
     """(n, 2) counter-clockwise."""
@@ -59,15 +52,16 @@ class Band:
 
 
 def straight_back(path: np.ndarray, thick: float = THICK) -> np.ndarray:
-    """Return (2, 2) corners of a straight lower side, behind the last place of a surface and behind the first."""
+    """Return (2, 2) corners of a straight lower side, behind a surface's last place and its first."""
     under = behind(path[-1] - path[0])
     lowest = float((path @ under).max()) + thick
     return np.array([path[k] + (lowest - path[k] @ under) * under for k in (-1, 0)])
 
 
 def is_simple(path: np.ndarray, feet: np.ndarray) -> bool:
-    """Return True if the polygon of a surface and its lower corners crosses itself nowhere: then its signed area is
-    that of what it goes round.
+    """Return True if the polygon of a surface and its lower corners crosses itself nowhere.
+
+    Then its signed area is that of what it goes round.
     """
     corners = np.vstack([simplified(path, CHORD), feet])
     signed = abs(area(corners)) / 2
@@ -75,17 +69,16 @@ def is_simple(path: np.ndarray, feet: np.ndarray) -> bool:
 
 
 def is_free(path: np.ndarray, feet: np.ndarray, centres: np.ndarray, radius: float) -> bool:
-    """Return True if the polygon of a surface and its lower corners crosses itself nowhere, and what runs on the
-    surface, a disc about ``centres`` (T, 2), is clear of its other sides.
+    """Return True if a surface with its lower corners crosses neither itself nor what runs on it.
+
+    What runs there is a disc about ``centres`` (T, 2), which must be clear of the other sides.
     """
     others = np.vstack([path[-1:], feet, path[:1]])
     return is_simple(path, feet) and bool(distances(centres, others).min() >= radius)
 
 
 def is_clear(backing: Band, path: np.ndarray, centres: np.ndarray, radius: float) -> bool:
-    """Return True if a disc about ``centres`` (T, 2) that runs on a surface is clear of the other sides of the band
-    there.
-    """
+    """Return True if a disc about ``centres`` (T, 2) on a surface is clear of the band's other sides."""
     return bool(distances(centres, np.vstack([path[-1:], backing.back[::-1], path[:1]])).min() >= radius)
 
 
@@ -111,7 +104,7 @@ def polygon(corners: np.ndarray) -> cq.Wire:
 
 
 def _mitres(path: np.ndarray) -> np.ndarray:
-    """Return (n, 2) from a polyline's places to those at a unit distance on its left, at corners as far as LONGEST."""
+    """Return (n, 2) from a polyline's places to those a unit to its left, at corners up to LONGEST."""
     way = np.diff(path, axis=0)
     way /= np.hypot(*way.T)[:, None]
     left = np.column_stack([-way[:, 1], way[:, 0]])
@@ -154,6 +147,11 @@ class Road(Feature):
             return False
         return bool(np.abs((self.feet - self.path[[-1, 0]]) @ way).max() < 1e-9 * float(way @ way))
 
+    @property
+    def holes(self) -> int:
+        """Number of its holes."""
+        return 0 if self.band is None else len(self.band.holes)
+
     def items(self, layout: Layout) -> Iterable[Item]:
         """Yield the wall up to the height of what it carries."""
         bodies = tuple(dict.fromkeys(part.body for part in self.rounds))
@@ -179,12 +177,11 @@ class Road(Feature):
         """Build the wall; the base plate goes on beside it, under what it carries."""
         seat = plan.layout.sizes.pivot.fit.seat
         top = max(part.top(heights) for part in self.rounds)
-        holes = 0 if self.band is None else len(self.band.holes)
         road, material = self, "aluminium"
         if self.holds(plan.layout.m):
             road = self.reaching(plan.base_under, np.array(plan.layout.m.gravity))
             material = "concrete"
-        name = plan.make("ground", f"road_{self.name}", road._wall(seat, top), material, holes)
+        name = plan.make("ground", f"road_{self.name}", road.wall(seat, top), material, self.holes)
         plan.pressed_into("ground", name, self.rounds)
         if self.band is not None:
             (x0, y0), (x1, y1) = self.band.border.min(axis=0), self.band.border.max(axis=0)
@@ -202,8 +199,9 @@ class Road(Feature):
         return bool(down) and any(part.look == "wheel" for part in self.rounds)
 
     def reaching(self, places: Sequence[tuple[float, float]], pull: np.ndarray) -> Road:
-        """Return the road with as much of its straight continuations as lies over or under ``places`` (rmm), ``pull``
-        (2,) pointing down.
+        """Return the road with its straight continuations as far as ``places`` (rmm) ask.
+
+        ``pull`` (2,) points down: what lies over or under a place reaches it.
         """
         if not self.is_square or not len(places):
             return self
@@ -216,9 +214,10 @@ class Road(Feature):
             ends.append((end + far / run * (end - inner))[None] if goes_on else self.path[:0])
         return along(self.name, self.rounds, np.vstack([ends[0], self.path, ends[1]]))
 
-    def _wall(self, low: float, high: float) -> cq.Workplane:
-        """Return the wall of flat facets as long as its bends allow: a spline's many short ones make the clearance
-        proof slow.
+    def wall(self, low: float, high: float) -> cq.Workplane:
+        """Return the wall, of flat facets as long as its bends allow.
+
+        A spline's many short ones make the clearance proof slow.
         """
         if self.band is not None:
             return self.band.wall(low, high)
@@ -231,8 +230,9 @@ def along(name: str, rounds: Sequence[Round], path: np.ndarray, thick: float = T
 
 
 def backed(name: str, part: Round, path: np.ndarray, centres: np.ndarray, radius: float) -> Road | None:
-    """Return a road that a disc about ``centres`` (T, 2) runs on without meeting its other sides: with a straight lower
-    side if it can have one, else a band; None if neither can be.
+    """Return a road that a disc about ``centres`` (T, 2) runs on without meeting its other sides.
+
+    It has a straight lower side if it can have one, else it is a band; None if neither can be.
     """
     road = along(name, [part], path)
     if is_free(path, road.feet, centres, radius):
@@ -249,7 +249,7 @@ def banded(name: str, rounds: Sequence[Round], path: np.ndarray) -> Road | None:
 
 def runs_on_ground(layout: Layout) -> bool:
     """Return True if a wheel runs on a road of ground, and gravity holds it there."""
-    return any(road.holds(layout.m) for road in layout.features if isinstance(road, Road))
+    return any(road.holds(layout.m) for road in layout.select(Road))
 
 
 def _thinned(path: np.ndarray) -> np.ndarray:
@@ -293,8 +293,9 @@ def _both(first: Road, second: Road) -> Road | None:
 
 
 def _common(first: np.ndarray, second: np.ndarray) -> np.ndarray | None:
-    """Return (n, 2) one path along both; None where they part, or where there is a gap between two that are not
-    straight.
+    """Return (n, 2) one path along both.
+
+    None where they part, or where there is a gap between two that are not straight.
     """
     way = (first[-1] - first[0]) / np.hypot(*(first[-1] - first[0]))
     at, other = (first @ way, second @ way)

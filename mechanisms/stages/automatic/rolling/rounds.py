@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal, cast
+from typing import Literal, cast
 
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import build
+from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Levels, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Plan, build
 from mechanisms.stages.automatic.layout.planar import disc
 from mechanisms.stages.automatic.layout.sizes import CLEAR
 from mechanisms.stages.automatic.pins.free_bodies import Face
@@ -19,12 +19,6 @@ from shared.shapes.pin import washer
 from shared.shapes.screw import ball as sphere
 from shared.shapes.solid import placed
 from shared.stage.errors import UserError
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-
 
 # Round parts that touch something: a ball that is free, a wheel with a tyre, a disc on a body that has joints.
 #
@@ -84,7 +78,7 @@ class Round(Feature):
         return Face(*self.at, self.rim(layout) - 0.5 if self.look == "wheel" else self.built_radius - 0.5)
 
     def tyre(self, layout: Layout) -> float:
-        """Return how thick the tyre of a wheel is (rmm): thicker where it is pressed in, as far as that is possible."""
+        """Return how thick a wheel's tyre is (rmm): thicker where it is pressed in, as far as it can be."""
         running = layout.sizes.pivot.fit.running
         return max(
             min(TYRE * self.built_radius, 5.0), min(self.pressed + running, self.built_radius - self.hub(layout) - RIM)
@@ -134,7 +128,9 @@ class Round(Feature):
 def round_at(
     layout: Layout, name: str, body: str, at: tuple[float, float], radius: float, look: Look, pressed: float = 0.0
 ) -> tuple[Round, bool]:
-    """Return the round part at a place of a body, and whether it is a new one; ``radius`` and ``pressed`` in rmm.
+    """Return the round part at a place of a body, and whether it is a new one.
+
+    ``radius`` and ``pressed`` in rmm.
 
     Where there is one already, it becomes as small as all that it touches ask for, and a wheel if one of them does.
     """

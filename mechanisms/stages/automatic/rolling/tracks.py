@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 
+from mbsd.model.force import Force
+from mbsd.model.joint import Joint
 from mechanisms.stages.automatic.layout.curves import (
     continued,
     curve_path,
@@ -19,16 +20,15 @@ from mechanisms.stages.automatic.layout.curves import (
     on_body,
     turns_left,
 )
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot
+from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Foot, Plan
 from mechanisms.stages.automatic.layout.planar import Rounded, around, convex_hull, disc
-from mechanisms.stages.automatic.pins.pins import Pin
+from mechanisms.stages.automatic.pins.pins import pins_on
 from mechanisms.stages.automatic.rolling.roads import (
     CHORD,
     PIECES,
     THICK,
-    Band,
     Road,
     along,
     backed,
@@ -37,20 +37,12 @@ from mechanisms.stages.automatic.rolling.roads import (
     polygon,
     straight_back,
 )
+from mechanisms.stages.automatic.rolling.rounds import Round
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded
 from shared.shapes.outline import distances, normals, simplified
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd.model.force import Force
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-    from mechanisms.stages.automatic.rolling.rounds import Round
-
 
 # Tracks of round parts where there is no road on ground: rings and discs about closed curves, and roads of moving
 # bodies.
@@ -73,15 +65,13 @@ class Track(Feature):
     carried: Round
     path: np.ndarray
     """(n, 2) the surface; what is carried is on its left. Closed: its last place is its first."""
-    feet: np.ndarray | None = None
-    """(2, 2) of an open one: the other corners, behind the last place of the path and behind the first."""
-    band: Band | None = None
-    """Band of an open one: what lies behind the surface where that is no straight lower side."""
+    road: Road | None = None
+    """Surface of an open one with what lies behind it, as if on ground."""
 
     @property
     def inside(self) -> bool:
         """True if it lies round what it carries."""
-        return self.feet is None and turns_left(self.path)
+        return self.road is None and turns_left(self.path)
 
     @property
     def what(self) -> str:
@@ -92,17 +82,17 @@ class Track(Feature):
         """Return the plate below it."""
         if self.body == "ground":
             return []
-        if self.band is not None:
-            return [Anchor(self.body, float(x), float(y), EDGE) for x, y in _few(convex_hull(self.band.border))]
-        if self.feet is not None:
-            behind = self.feet[::-1]
-            ends = (self.path[[0, -1]] + behind) / 2
+        if self.road is not None and self.road.band is not None:
+            return [Anchor(self.body, float(x), float(y), EDGE) for x, y in _few(convex_hull(self.road.band.border))]
+        if self.road is not None:
+            ends = (self.path[[0, -1]] + self.road.feet[::-1]) / 2
             return [Anchor(self.body, float(x), float(y), THICK / 2 + EDGE) for x, y in ends]
         return [Anchor(self.body, float(x), float(y), THICK) for x, y in _few(convex_hull(self.path))]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """Yield the convex pieces, from the base or the plate to the height of what it carries; and a rule: that is in
-        another layer than the plate, even where they never meet.
+        """Yield the convex pieces up to the height of what it carries, and a rule.
+
+        The rule: what it carries is in another layer than the plate, even where they never meet.
         """
         other, ball = self.carried.body, int(self.carried.look == "ball")
         if self.body == "ground":
@@ -118,8 +108,8 @@ class Track(Feature):
 
     def pieces(self) -> Iterable[Rounded]:
         """Yield the convex ones that cover it."""
-        if self.feet is not None:
-            for corners in Road(self.name, [self.carried], self.path, self.feet, self.band).pieces():
+        if self.road is not None:
+            for corners in self.road.pieces():
                 yield around([(float(x), float(y)) for x, y in corners], 0.2)
         elif not self.inside:
             yield Rounded(convex_hull(self.path), 0.2)
@@ -140,19 +130,19 @@ class Track(Feature):
         else:
             middle = heights.bottom(other) + heights.thickness / 2
             low, high = 2 * middle - self.carried.top(heights), heights.bottom(self.body) - seat
-        wall, holes = self._wall(low, high), len(self.band.holes) if self.band is not None else int(self.inside)
-        for x, y in [] if self.inside or self.feet is not None else self._pins(plan.layout):
+        wall, holes = self._wall(low, high), self.road.holes if self.road is not None else int(self.inside)
+        for x, y in [] if self.inside or self.road is not None else self._pins(plan.layout):
             wall = wall.cut(extruded(outline.circle(x, y, _hole(plan.layout)), high - low + 2, low - 1))
             holes += 1
         name = plan.make(self.body, f"track_{self.name}", wall, "aluminium", holes)
         plan.pressed_into(self.body, name, [self.carried])
 
     def _pins(self, layout: Layout) -> list[tuple[float, float]]:
-        """Return places of pins that go through what lies within the curve. Raises UserError where one breaks its
-        edge.
+        """Return places of pins that go through what lies within the curve.
+
+        Raises UserError where one breaks its edge.
         """
-        pins = [pin for pin in layout.features if isinstance(pin, Pin) and self.body in pin.places]
-        pins = [pin for pin in pins if _holds(self.path, pin.places[self.body])]
+        pins = [pin for pin in pins_on(layout, self.body) if _holds(self.path, pin.places[self.body])]
         for pin in pins:
             near = float(distances(np.array([pin.places[self.body]]), self.path)[0])
             if near < _hole(layout) + EDGE:
@@ -166,11 +156,9 @@ class Track(Feature):
         return [pin.places[self.body] for pin in pins]
 
     def _wall(self, low: float, high: float) -> cq.Workplane:
-        if self.band is not None:
-            return self.band.wall(low, high)
+        if self.road is not None:
+            return self.road.wall(low, high)
         corners = simplified(self.path, CHORD)
-        if self.feet is not None:
-            return extruded(polygon(np.vstack([corners, self.feet])), high - low, low)
         surface = extruded(polygon(corners[:-1]), high - low, low)
         if not self.inside:
             return surface
@@ -180,15 +168,15 @@ class Track(Feature):
 
 
 def track(name: str, body: str, carried: Round, path: np.ndarray, closed: bool, road: Road | None = None) -> Track:
-    """Return a track on a path (n, 2) (rmm, the body's frame) with what it carries on its left; a closed one is closed
-    here.
+    """Return a track on a path (n, 2) (rmm, the body's frame) with what it carries on its left.
+
+    A closed one is closed here.
 
     An open one has behind it what a ``road`` on the same path has, by default a straight lower side.
     """
     if closed:
         return Track(name, body, carried, np.vstack([path, path[:1]]))
-    road = along(name, [carried], path) if road is None else road
-    return Track(name, body, carried, path, road.feet, road.band)
+    return Track(name, body, carried, path, along(name, [carried], path) if road is None else road)
 
 
 def circle(at: tuple[float, float], radius: float, inside: bool) -> np.ndarray:
@@ -251,7 +239,10 @@ LEAST = 1e-6
 
 
 def rolled_road(joint: Joint, part: Round, layout: Layout) -> Road:
-    """Return the road of a disc that rolls on an open curve. Raises UserError where each would be in the disc's way."""
+    """Return the road of a disc that rolls on an open curve.
+
+    Raises UserError where each would be in the disc's way.
+    """
     path = on_body(curve_path(joint.params["points"], False), joint.i, layout)
     centres = layout.seen(joint.j.body.name, layout.place(joint.j), joint.i.body.name)
     radius, few = layout.sizes.of_metres(joint.params["radius"]), centres[:: max(1, len(centres) // MOST)]
@@ -267,8 +258,9 @@ def rolled_road(joint: Joint, part: Round, layout: Layout) -> Road:
 
 
 def touched_path(touch: Joint | Force, places: np.ndarray, radius: float, layout: Layout) -> np.ndarray:
-    """Return (n, 2) the open curve of a contact in the frame of its body (rmm), with as much of its straight
-    continuations as a disc about ``places`` (T, 2) touches.
+    """Return (n, 2) the open curve of a contact in the frame of its body (rmm).
+
+    It has as much of its straight continuations as a disc about ``places`` (T, 2) touches.
     """
     points, ends = touch.params["points"], []
     path, ways = on_body(curve_path(points, False), touch.i, layout), end_ways(points, touch.i)
@@ -281,8 +273,9 @@ def touched_path(touch: Joint | Force, places: np.ndarray, radius: float, layout
 
 
 def touched_road(touch: Joint | Force, part: Round, path: np.ndarray, places: np.ndarray, layout: Layout) -> Road:
-    """Return the road of a contact along a path (n, 2) (rmm) that a round part about ``places`` (T, 2) touches. Raises
-    UserError where nothing has room behind the surface.
+    """Return the road of a contact along a path (n, 2) (rmm) that a part about ``places`` (T, 2) touches.
+
+    Raises UserError where nothing has room behind the surface.
     """
     few = places[:: max(1, len(places) // MOST)]
     road = backed(touch.name, part, path, few, part.built_radius - part.pressed - OFF)

@@ -9,10 +9,13 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
+import numpy as np
+
+from mbsd import Mechanism, Solution
 from mechanisms.stages.automatic.layout.motion import poses_of, times_of
 from mechanisms.stages.automatic.layout.planar import disc
+from mechanisms.stages.automatic.layout.sizes import Sizes
 from mechanisms.stages.automatic.shafts.bearings import (
     BOSS,
     FOOT,
@@ -23,7 +26,7 @@ from mechanisms.stages.automatic.shafts.bearings import (
     bearers,
     free_places,
 )
-from mechanisms.stages.automatic.shafts.bodies import Machine
+from mechanisms.stages.automatic.shafts.bodies import Machine, Mounted
 from mechanisms.stages.automatic.shafts.cylinders import Cylinder, cylinders
 from mechanisms.stages.automatic.shafts.machine import free_links, machine
 from mechanisms.stages.automatic.shafts.passing import (
@@ -46,13 +49,6 @@ from mechanisms.stages.automatic.shafts.valves import ValvePlan, valve_plans
 from mechanisms.stages.automatic.shafts.wheels import Wheels, wheels
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
-
-if TYPE_CHECKING:
-    import numpy as np
-
-    from mbsd import Mechanism, Solution
-    from mechanisms.stages.automatic.layout.sizes import Sizes
-    from mechanisms.stages.automatic.shafts.bodies import Mounted
 
 BELOW = 8.0
 """From the lowest part that moves to the base plate, at least (rmm)."""

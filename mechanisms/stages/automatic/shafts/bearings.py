@@ -6,23 +6,18 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechanisms.stages.automatic.layout.items import Item, Reach
 from mechanisms.stages.automatic.layout.layers import Problem, Undecided, find_layers
 from mechanisms.stages.automatic.layout.planar import Rounded, around, disc, least_gap
-from mechanisms.stages.automatic.shafts.bodies import NEAR, SAME, carries, marker_on, place
+from mechanisms.stages.automatic.layout.sizes import Sizes
+from mechanisms.stages.automatic.shafts.bodies import NEAR, SAME, Machine, carries, marker_on, place
 from mechanisms.stages.automatic.shafts.passing import Takes
+from mechanisms.stages.automatic.shafts.shaft_plan import Journal, Measures, ShaftPlan
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.sizes import Sizes
-    from mechanisms.stages.automatic.shafts.bodies import Machine
-    from mechanisms.stages.automatic.shafts.shaft_plan import Journal, Measures, ShaftPlan
-
 
 # Pins between links in different planes, and axles on ground that links turn on (mm).
 
@@ -32,7 +27,10 @@ FOOT = 16.0
 
 @dataclass(frozen=True, eq=False)
 class Axle:
-    """Links that turn about one axis, in the order of their planes; the lowest holds the pin unless ground does."""
+    """Links that turn about one axis, in the order of their planes.
+
+    The lowest holds the pin unless ground does.
+    """
 
     joint: str
     places: Mapping[str, tuple[float, float]]
@@ -46,8 +44,9 @@ class Axle:
 
 
 def axles(machine: Machine) -> list[Axle]:
-    """Return pins between links, and between links and ground. Raises UserError for two links of one axis in one
-    plane.
+    """Return pins between links, and between links and ground.
+
+    Raises UserError for two links of one axis in one plane.
     """
     groups: list[tuple[str, dict[str, tuple[float, float]]]] = []
     for body, link in machine.links.items():
@@ -118,8 +117,9 @@ def free_places(
     pins: Sequence[Axle],
     taken: Sequence[Takes],
 ) -> dict[str, float]:
-    """Return the place of each link of ``free``, which the machine of ``measures`` has in any plane. ``taken`` is what
-    else takes room.
+    """Return the place of each link of ``free``, which the machine of ``measures`` has in any plane.
+
+    ``taken`` is what else takes room.
 
     Raises UserError naming the links where no order of layers lets them pass.
     """
@@ -243,8 +243,9 @@ class Bearers:
 def bearers(
     machine: Machine, plan: ShaftPlan, taken: Sequence[Takes], running: float, flywheel: float = 0.0
 ) -> Bearers:
-    """Find places for pillars that nothing comes near to, also not a flywheel of that radius. Raises UserError where
-    there are not two.
+    """Find places for pillars that nothing comes near to, also not a flywheel of that radius.
+
+    Raises UserError where there are not two.
     """
     radius = PILLAR * plan.unit
     room = 0.05 * plan.unit + (BOSS - 1) * radius
@@ -320,7 +321,7 @@ def _is_free(machine: Machine, shape: Rounded, taken: Sequence[Takes]) -> bool:
 
 
 def _spread(machine: Machine, plan: ShaftPlan, free: list[float]) -> list[float]:
-    """Return directions: first the one that is farthest from all bores, then always the farthest from those chosen."""
+    """Return directions: the farthest from all bores, then always the farthest from those chosen."""
     bores = [math.atan2(piston.along[1], piston.along[0]) for piston in machine.pistons.values()]
     chosen: list[float] = []
     while free and len(chosen) < MOST:

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd import Mechanism
+from mbsd.model.body import Marker
+from mbsd.model.joint import Joint
+from mechanisms.stages.automatic.layout.planar import placed
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from mbsd import Mechanism
-    from mbsd.model.body import Marker
-    from mbsd.model.joint import Joint
-
 
 # Roles of bodies with places along the normal: shafts, links in one plane, pistons, rams, valves
 # (mm).
@@ -76,18 +72,25 @@ class Link:
 
 
 @dataclass(frozen=True, eq=False)
-class Piston:
+class Sliding:
     """A body that slides along a line of ground."""
 
     body: str
     joint: str
-    z: float
+    """Name of the joint that guides it."""
     along: Point
-    """Unit vector on ground, away from what drives it."""
-    line: Point
-    """A place of ground on the line of its middle."""
+    """Unit vector on ground: of a valve the way in which its cam pushes, of others away from what drives them."""
     turn: float
     """Direction of ``along`` in its own frame (rad)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Piston(Sliding):
+    """A body that slides in a bore."""
+
+    z: float
+    line: Point
+    """A place of ground on the line of its middle."""
     wrist: Point
     """The place of its wrist pin in its own frame."""
     aside: float
@@ -100,7 +103,7 @@ class Piston:
 
 @dataclass(frozen=True)
 class RamPin:
-    """A pin of a ram, which carries one link: s along its way from its first pin, q to the left of the guide's line."""
+    """A pin of a ram with one link: s along its way from the first pin, q to the left of the guide."""
 
     joint: str
     link: str
@@ -110,17 +113,11 @@ class RamPin:
 
 
 @dataclass(frozen=True, eq=False)
-class Ram:
+class Ram(Sliding):
     """A body that slides along a line of ground and is driven in several planes."""
 
-    body: str
-    joint: str
-    along: Point
-    """Unit vector on ground, away from what drives it."""
     line: Point
     """A place of ground on the line of the guide."""
-    turn: float
-    """Direction of ``along`` in its own frame (rad)."""
     origin: Point
     """Where s and q are 0 in its own frame."""
     pins: tuple[RamPin, ...]
@@ -131,20 +128,13 @@ class Ram:
 
 
 @dataclass(frozen=True, eq=False)
-class Valve:
+class Valve(Sliding):
     """A body that slides along a line of ground and is pushed by the cam of a shaft with its flat face."""
 
-    body: str
-    joint: str
-    """Name of the joint that guides it."""
     cam: str
     """The joint with the cam."""
     shaft: str
     z: float
-    along: Point
-    """Unit vector on ground, the way in which the cam pushes."""
-    turn: float
-    """Direction of ``along`` in its own frame (rad)."""
     face: Point
     """The place of its face's marker, in its own frame."""
     closed: Point
@@ -171,9 +161,7 @@ class Machine:
 
     def path(self, body: str, x: float, y: float) -> np.ndarray:
         """Return (T, 2) a place of a body on ground over the motion."""
-        pose = self.poses[body]
-        c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
-        return np.stack([pose[:, 0] + c * x - s * y, pose[:, 1] + s * x + c * y], axis=1)
+        return placed(np.array([[x, y]]), self.poses[body])[:, 0]
 
 
 # Where along the normal of the plane the joints of a body lie, as the model gives it (mm).
@@ -183,7 +171,7 @@ SAME = 1e-3
 
 
 def has_places(m: Mechanism) -> bool:
-    """Return True if a moving body, or a marker of a joint on one, has a place along the normal of the plane."""
+    """Return True if a moving body, or a joint's marker on one, has a place along the normal."""
     moving = [body for name, body in m.bodies.items() if name != "ground"]
     ends = [marker for joint in m.joints.values() for marker in (joint.i, joint.j)]
     return any(body.z is not None for body in moving) or any(
@@ -207,8 +195,9 @@ def place(marker: Marker) -> tuple[float, float]:
 
 
 def plane(joint: Joint, body: str) -> float | None:
-    """Return the plane (mm) in which a joint acts on ``body``: the marker's own, else the body's, else that of the
-    other body; None if none is given, as of a joint with ground.
+    """Return the plane (mm) in which a joint acts on ``body``, None if none is given.
+
+    It is the marker's own, else the body's, else that of the other body unless this is ground.
     """
     own, other = marker_on(joint, body), other_on(joint, body)
     z = own.plane
@@ -283,7 +272,10 @@ MIDDLE = 0.62
 
 
 def carrier(machine: Machine, link: Link) -> Link | None:
-    """Return the rod on a crank pin from which a rod of a piston hangs in the same plane; None for other links."""
+    """Return the rod on a crank pin from which a rod of a piston hangs in the same plane.
+
+    None for other links.
+    """
     if _crank_eye(machine, link) is not None or not _drives(machine, link):
         return None
     for eye in link.eyes:
@@ -325,7 +317,10 @@ def rod_foot(machine: Machine, link: Link) -> LinkEye | None:
 
 
 def ring_reach(machine: Machine, link: Link, bore: float) -> float:
-    """Return how far the flanges of a rod's carrier, or its own, reach from the crank pin; 0 without flanges."""
+    """Return how far the flanges of a rod's carrier, or its own, reach from the crank pin.
+
+    0 without flanges.
+    """
     own = carrier(machine, link) or link
     main = _crank_eye(machine, own)
     if main is None:

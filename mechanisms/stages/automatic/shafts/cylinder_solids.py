@@ -4,23 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import cadquery as cq
 
 from mechanisms.stages.automatic.body_shapes import first_made
-from mechanisms.stages.automatic.shafts.cylinders import HEAD, SMALL_END, WRIST_PIN
+from mechanisms.stages.automatic.shafts.cylinders import HEAD, SMALL_END, WRIST_PIN, Cylinder
 from mechanisms.stages.automatic.shafts.passing import DECK, deck_half, deck_range, deck_top
-from mechanisms.stages.automatic.shafts.valves import COIL, along_x, port_shape, spring_seats
+from mechanisms.stages.automatic.shafts.valves import COIL, ValvePlan, along_x, port_shape, spring_seats
 from shared.shapes.build import built_once, eased, extruded, turned
 from shared.shapes.kernel import through_holes
 from shared.shapes.outline import circle
 from shared.shapes.solid import Hold, Solid, placed
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.shafts.cylinders import Cylinder
-    from mechanisms.stages.automatic.shafts.valves import ValvePlan
-
 
 # A piston with its rings and its wrist pin, and its liner with cooling fins, cut open, with a head (mm).
 
@@ -57,8 +52,9 @@ class PistonSize(NamedTuple):
 
     @classmethod
     def from_cylinder(cls, own: Cylinder) -> PistonSize:
-        """Return the size for a cylinder, rounded: what follows from the motion differs from bore to bore in its last
-        bits.
+        """Return the size for a cylinder, rounded.
+
+        What follows from the motion differs from bore to bore in its last bits.
         """
         return cls(*(rounded(size) for size in (own.bore, own.running, own.crown, own.skirt, own.piston.aside)))
 
@@ -124,8 +120,9 @@ class LinerSize(NamedTuple):
 
 @built_once
 def liner_shape(own: LinerSize, fin: float, window: float) -> cq.Workplane:
-    """Return the liner from its lower end (x = own.low) up; ``fin`` is the radius of its fins, ``window`` the direction
-    about x, from y towards z (rad), to which it is open.
+    """Return the liner from its lower end (x = own.low) up.
+
+    ``fin`` is the radius of its fins, ``window`` the direction about x, from y towards z (rad), to which it is open.
     """
     b, inner, outer = own.bore, own.bore / 2, own.outer
     low, high = own.low, own.top
@@ -147,8 +144,9 @@ def liner_shape(own: LinerSize, fin: float, window: float) -> cq.Workplane:
 
 
 def head_shape(own: Cylinder, radius: float, valves: Sequence[ValvePlan] = ()) -> cq.Workplane:
-    """Return a round head with fins on the liner's upper end, and a plug in its middle; with valves their ports and
-    guides in its place.
+    """Return a round head with fins on the liner's upper end, and a plug in its middle.
+
+    With valves it has their ports and guides in its place.
     """
     b, low = own.bore, own.top + SEAT
     high, plug = low + HEAD * b, 0.08 * b
@@ -181,7 +179,7 @@ def bank_solids(
     low: float,
     valves: Sequence[ValvePlan] = (),
 ) -> list[Solid]:
-    """Return liners, heads with the seats of valve springs, and the deck from the base plate (z = ``low``) up."""
+    """Return liners, heads with seats of valve springs, and the deck from the base plate's z = ``low`` up."""
     solids = []
     for own in bank:
         name = own.piston.body
@@ -228,7 +226,7 @@ def _turned(own: Cylinder, shape: cq.Workplane) -> cq.Workplane:
 
 
 def _window(own: Cylinder, bank: Sequence[Cylinder], others: Sequence[Sequence[Cylinder]]) -> float:
-    """Return the direction about the bore's middle, from left of it towards z (rad), to which its liner is open."""
+    """Return the direction (rad, from left of a bore towards z) to which its liner is open."""
     if len(bank) == 1:
         return math.pi / 2
     every = [other[0].piston.along for other in others]

@@ -1,4 +1,4 @@
-"""The sizes of each cylinder: bore, liner and piston, from the stroke, the rod and the neighbours along the shaft (mm).
+"""The sizes of cylinders from the stroke, the rod and the neighbours along the shaft (mm).
 
 Along the middle of a bore, s is counted from abreast of the shaft. All proportions are parts of the bore.
 """
@@ -6,16 +6,20 @@ Along the middle of a bore, s is counted from abreast of the shaft. All proporti
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.planar import Rounded, around, disc, least_gap
+from mechanisms.stages.automatic.layout.planar import Rounded, around, box, disc, least_gap
 from mechanisms.stages.automatic.shafts.bodies import (
     HUB,
     KNUCKLE_EYE,
     SAME,
+    Link,
+    Machine,
+    Piston,
+    Shaft,
     carrier,
     is_carrier,
     refuse_near,
@@ -25,11 +29,6 @@ from mechanisms.stages.automatic.shafts.bodies import (
 )
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from mechanisms.stages.automatic.shafts.bodies import Link, Machine, Piston, Shaft
 
 SQUARE = 0.95
 """Bore over stroke, where there is room and no gas says otherwise."""
@@ -107,8 +106,9 @@ class Cylinder:
 
 
 def cylinders(machine: Machine) -> dict[str, Cylinder]:
-    """Return cylinders by piston. Raises UserError naming cylinders that have no room beside each other, or none for
-    their rod.
+    """Return cylinders by piston.
+
+    Raises UserError naming cylinders that have no room beside each other, or none for their rod.
     """
     wished = {name: _wish(machine, piston) for name, piston in machine.pistons.items()}
     _refuse_near(machine, wished)
@@ -136,8 +136,9 @@ def cylinders(machine: Machine) -> dict[str, Cylinder]:
 
 
 def _beside_its_mate(machine: Machine, own: Cylinder, every: Mapping[str, Cylinder]) -> Cylinder:
-    """Return the cylinder, shared with a piston that works against its own. Raises UserError if their crowns would
-    meet.
+    """Return the cylinder, shared with a piston that works against its own.
+
+    Raises UserError if their crowns would meet.
     """
     for name, other in every.items():
         way = np.array(other.origin) - np.array(own.origin)
@@ -180,7 +181,7 @@ def _shaft(machine: Machine, piston: Piston) -> Shaft | None:
 
 
 def _wish(machine: Machine, piston: Piston) -> float:
-    """Return the bore of the gas; else one equal to the stroke, as far as neighbours along the shaft allow."""
+    """Return the bore of the gas, else one equal to the stroke as far as neighbours allow."""
     if piston.area is not None:
         return math.sqrt(4 * piston.area / math.pi)
     low, high, _ = _stroke(machine, piston)
@@ -189,9 +190,7 @@ def _wish(machine: Machine, piston: Piston) -> float:
 
 
 def _neighbours(machine: Machine, piston: Piston) -> dict[str, float]:
-    """Return pistons whose bores have the same line in the plane, or one beside it, and how far away along z they
-    are.
-    """
+    """Return pistons on the same line in the plane, or beside it, with their distances along z."""
     distances = {}
     for name, other in machine.pistons.items():
         cross = piston.along[0] * other.along[1] - piston.along[1] * other.along[0]
@@ -253,9 +252,7 @@ def rod_shapes(machine: Machine, link: Link, bore: float) -> list[Rounded]:
 
 
 def shank_shapes(machine: Machine, link: Link, bore: float) -> list[Rounded]:
-    """Return shapes of a carrier or of a rod on one: shank, small end, and eye on the knuckle pin or hub on the
-    crank.
-    """
+    """Return shapes of a carrier or a rod on one: shank, small end, and knuckle eye or crank hub."""
     main = rod_foot(machine, link)
     ends = [eye for eye in link.eyes if eye.on in machine.pistons or eye is main]
     shank = around([(eye.x, eye.y) for eye in ends], (SHANK + ROOM / 2) * bore)
@@ -287,8 +284,7 @@ def _has_room(machine: Machine, piston: Piston, foot: np.ndarray, low: float, bo
     if aside + SHANK * bore > (0.5 - ROOM) * bore:
         return False
     wide = (0.5 + WALL) * bore
-    ends = [foot + s * along + q * left for s in (low, low + bore) for q in (-wide, wide)]
-    wall = around([(float(x), float(y)) for x, y in ends], 1e-6)
+    wall = box((foot[0], foot[1]), piston.along, low, low + bore, wide)
     still = machine.poses["ground"][::EVERY]
     for other in machine.pistons.values():
         link = machine.links.get(other.link or "")

@@ -3,35 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 
 from mechanisms.stages.automatic.body_shapes import body_shape, first_made
 from mechanisms.stages.automatic.layout.planar import convex_hull
-from mechanisms.stages.automatic.shafts.bearings import BOSS, FOOT, heights_of
-from mechanisms.stages.automatic.shafts.bodies import HUB, KNUCKLE_EYE, KNUCKLE_PIN
+from mechanisms.stages.automatic.layout.sizes import Sizes
+from mechanisms.stages.automatic.shafts.bearings import BOSS, FOOT, Axle, Bearers, heights_of
+from mechanisms.stages.automatic.shafts.bodies import HUB, KNUCKLE_EYE, KNUCKLE_PIN, Link, Machine
 from mechanisms.stages.automatic.shafts.cylinders import BIG_END, SHANK
+from mechanisms.stages.automatic.shafts.shaft_plan import Journal
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded
 from shared.shapes.kernel import rough_box, through_holes
 from shared.shapes.link import Eye, link
 from shared.shapes.pin import Head, pin, washer
 from shared.shapes.solid import Solid, placed
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from mechanisms.stages.automatic.layout.sizes import Sizes
-    from mechanisms.stages.automatic.shafts.bearings import Axle, Bearers
-    from mechanisms.stages.automatic.shafts.bodies import Link, Machine
-    from mechanisms.stages.automatic.shafts.shaft_plan import Journal
-
 
 # Links in one plane: connecting rods with a split big end, and plates round any number of eyes (mm).
 
@@ -130,7 +122,7 @@ END = 0.1
 
 @dataclass(frozen=True)
 class Fork:
-    """Sizes of a carrier: its height, the thickness of each flange and of its shank, the bore it goes with."""
+    """Sizes of a carrier: height, thickness of each flange and of its shank, bore it goes with."""
 
     height: float
     flange: float
@@ -141,8 +133,9 @@ class Fork:
 def carrier_shape(
     main: Point, hole: float, small: tuple[float, float, Eye], pins: Sequence[Point], fork: Fork
 ) -> cq.Workplane:
-    """Return a carrier from z = 0 up: ``main`` on the crank pin with a ``hole`` (diameter), the ``small`` end, knuckle
-    ``pins``.
+    """Return a carrier from z = 0 up.
+
+    ``main`` is on the crank pin with a ``hole`` (diameter); ``small`` is its other end; ``pins`` are knuckle pins.
     """
     (x, y), bore, height = main, fork.bore, fork.height
     plate = _flange(main, pins, fork.flange, bore)
@@ -164,7 +157,7 @@ def knuckle_pin(at: Point, height: float, bore: float) -> cq.Workplane:
 
 
 def _flange(main: Point, pins: Sequence[Point], height: float, bore: float, edge: float = EDGE) -> cq.Workplane:
-    """Return the flange from z = 0 up: round the big end and all pins, drawn in between them where there is room."""
+    """Return the flange round the big end and all pins, drawn in between them where there is room."""
     x, y = main
     own, hub = KNUCKLE_EYE * bore, BIG_END * bore
     ring = extruded(outline.circle(x, y, hub), height)
@@ -262,9 +255,7 @@ def bearer_solids(own: Bearers, low: float, number: str) -> list[Solid]:
 
 
 def _across(own: Bearers) -> float:
-    """Return the direction (rad) square to a line through the axis that stays clear of the arms, with some on either
-    side.
-    """
+    """Return the direction (rad) square to a line through the axis with arms on either side, clear of it."""
     x, y = own.plan.shaft.at
     arms = [math.atan2(v - y, u - x) for u, v in own.places]
     best, clear = 0.0, -1.0

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
+from mbsd import Mechanism
+from mbsd.model.body import Marker
+from mbsd.model.joint import Joint
 from mechanisms.stages.automatic.shafts.bodies import (
     NEAR,
     SAME,
@@ -14,6 +17,7 @@ from mechanisms.stages.automatic.shafts.bodies import (
     LinkEye,
     Machine,
     Piston,
+    Point,
     Ram,
     RamPin,
     Shaft,
@@ -29,15 +33,6 @@ from mechanisms.stages.automatic.shafts.bodies import (
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
-
-    from mbsd import Mechanism
-    from mbsd.model.body import Marker
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.shafts.bodies import Point
-
 
 # Bodies that slide along a line of ground: pistons, rams that are driven in several planes, valves under cams (mm).
 
@@ -72,19 +67,8 @@ def piston(machine: Machine, body: str, joint: Joint, joints: list[Joint]) -> Pi
     line, path = np.array(place(ground)), machine.path(body, *wrist)
     along, left = _guide(ground, [path], _driven_from(machine, link, line))
     aside = float((path[0] - line) @ left)
-    turn = math.atan2(along[1], along[0]) - float(machine.poses[body][0, 2])
-    return Piston(
-        body,
-        joint.name,
-        z,
-        (float(along[0]), float(along[1])),
-        (float(line[0]), float(line[1])),
-        turn,
-        wrist,
-        aside,
-        link,
-        _area(m, body),
-    )
+    way = body, joint.name, _point(along), _turn(machine, body, along)
+    return Piston(*way, z, _point(line), wrist, aside, link, _area(m, body))
 
 
 def ram(machine: Machine, body: str, joint: Joint, wrists: Sequence[Joint]) -> Ram:
@@ -105,7 +89,7 @@ def ram(machine: Machine, body: str, joint: Joint, wrists: Sequence[Joint]) -> R
     ends = [machine.path(link.body, eye.x, eye.y) for link in links for eye in link.eyes if eye.on not in ("", body)]
     behind = np.mean([end.mean(axis=0) for end in ends], axis=0) if ends else line
     along, left = _guide(ground, paths, behind)
-    turn = math.atan2(along[1], along[0]) - float(machine.poses[body][0, 2])
+    turn = _turn(machine, body, along)
     first = min(range(len(wrists)), key=lambda k: links[k].z)
     s0 = float((paths[first][0] - line) @ along)
     pins = [
@@ -117,17 +101,9 @@ def ram(machine: Machine, body: str, joint: Joint, wrists: Sequence[Joint]) -> R
     c, s = math.cos(turn), math.sin(turn)
     q = pins[0].q
     travel = (paths[first] - line) @ along
-    return Ram(
-        body,
-        joint.name,
-        (float(along[0]), float(along[1])),
-        (float(line[0]), float(line[1])),
-        turn,
-        (x + s * q, y - c * q),
-        tuple(pins),
-        float(travel.min()),
-        float(travel.max()),
-    )
+    origin = x + s * q, y - c * q
+    way = body, joint.name, _point(along), turn
+    return Ram(*way, _point(line), origin, tuple(pins), float(travel.min()), float(travel.max()))
 
 
 def valve(machine: Machine, body: str, joint: Joint, cam: Joint) -> Valve:
@@ -150,23 +126,24 @@ def valve(machine: Machine, body: str, joint: Joint, cam: Joint) -> Valve:
     path = machine.path(body, *place(face))
     pushed = path @ along
     least = int(np.argmin(pushed))
-    return Valve(
-        body,
-        joint.name,
-        cam.name,
-        other_on(cam, body).body.name,
-        z,
-        (float(along[0]), float(along[1])),
-        normal - theta,
-        place(face),
-        (float(path[least, 0]), float(path[least, 1])),
-        float(np.ptp(pushed)),
-    )
+    shaft, closed = other_on(cam, body).body.name, _point(path[least])
+    way = body, joint.name, _point(along), normal - theta
+    return Valve(*way, cam.name, shaft, z, place(face), closed, float(np.ptp(pushed)))
+
+
+def _point(place: np.ndarray) -> Point:
+    return float(place[0]), float(place[1])
+
+
+def _turn(machine: Machine, body: str, along: np.ndarray) -> float:
+    """Return the direction of ``along`` (2,), on ground, in the frame of a body at the start (rad)."""
+    return math.atan2(along[1], along[0]) - float(machine.poses[body][0, 2])
 
 
 def _guide(ground: Marker, paths: Sequence[np.ndarray], behind: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return unit vectors along a guide, the way in which places with ``paths`` (T, 2) lie ahead of one ``behind``, and
-    to the left of that.
+    """Return unit vectors along a guide and to the left of that.
+
+    Places with ``paths`` (T, 2) lie ahead of one ``behind``.
     """
     along = np.array([math.cos(ground.angle), math.sin(ground.angle)])
     if sum(float(((path - behind) @ along).mean()) for path in paths) < 0:
@@ -175,8 +152,9 @@ def _guide(ground: Marker, paths: Sequence[np.ndarray], behind: np.ndarray) -> t
 
 
 def _driven_from(machine: Machine, link: str | None, line: np.ndarray) -> np.ndarray:
-    """Return where the shaft is whose link moves a piston, also by a rod in the plane of another; else the guide's
-    marker.
+    """Return where the shaft is whose link moves a piston, else the guide's marker.
+
+    The link may move it by a rod in the plane of another.
     """
     if link in machine.links:
         own = machine.links[link]
@@ -258,7 +236,10 @@ def machine(
 
 
 def _cams(m: Mechanism, joints: Collection[Joint], sliding: Collection[str]) -> dict[str, Joint]:
-    """Return joints with cams by the body that is pushed. Raises UserError where that does not slide on ground."""
+    """Return joints with cams by the body that is pushed.
+
+    Raises UserError where that does not slide on ground.
+    """
     cams = {}
     for joint in joints:
         if joint.kind.name != CAM:
@@ -285,7 +266,10 @@ def _pins_of(body: str, joints: Collection[Joint]) -> list[Joint]:
 
 
 def _pistons(sliding: Collection[str], joints: Collection[Joint]) -> set[str]:
-    """Return bodies that slide on ground with one pin at most; what has more is a ram, and gives links no plane."""
+    """Return bodies that slide on ground with one pin at most.
+
+    What has more is a ram, and gives links no plane.
+    """
     return {body for body in sliding if len(_pins_of(body, joints)) < 2}
 
 
@@ -295,8 +279,9 @@ def _slides(joint: Joint, body: str) -> bool:
 
 
 def _is_shaft(m: Mechanism, body: str, pins: list[Joint]) -> bool:
-    """Return True if its markers have places, its links lie in several planes, or it is driven and has no other place
-    than they have.
+    """Return True for a body whose markers have places or whose links lie in several planes.
+
+    Also for one that is driven and has no other place than they have.
     """
     ends = [(marker_on(joint, body), other_on(joint, body)) for joint in pins if "ground" not in joint.bodies]
     if any(own.z is not None for own, _ in ends) or len(planes(m, body)) > 1:
@@ -349,12 +334,7 @@ def _known_planes(body: str, pins: list[Joint], sliding: Collection[str]) -> lis
 
 
 def _link(
-    m: Mechanism,
-    body: str,
-    own: list[Joint],
-    pins: list[Joint],
-    sliding: Collection[str],
-    chosen: Mapping[str, float],
+    m: Mechanism, body: str, own: list[Joint], pins: list[Joint], sliding: Collection[str], chosen: Mapping[str, float]
 ) -> Link:
     given = m.bodies[body].z
     slides = [joint.name for joint in own if joint.kind.name == "prismatic"]

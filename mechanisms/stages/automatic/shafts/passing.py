@@ -6,21 +6,15 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.planar import Rounded, around, disc, least_gap
-from mechanisms.stages.automatic.shafts.bodies import carrier, flange, is_carrier
-from mechanisms.stages.automatic.shafts.cylinders import HEAD, flange_shape, rod_shapes, shank_shapes
+from mechanisms.stages.automatic.layout.planar import Rounded, around, box, disc, least_gap
+from mechanisms.stages.automatic.shafts.bodies import Link, Machine, carrier, flange, is_carrier
+from mechanisms.stages.automatic.shafts.cylinders import HEAD, Cylinder, flange_shape, rod_shapes, shank_shapes
+from mechanisms.stages.automatic.shafts.shaft_plan import Measures, ShaftPlan
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.shafts.bodies import Link, Machine
-    from mechanisms.stages.automatic.shafts.cylinders import Cylinder
-    from mechanisms.stages.automatic.shafts.shaft_plan import Measures, ShaftPlan
-
 
 # Checks that bodies pass each other in the plane where they share heights, before anything is built (mm).
 
@@ -126,14 +120,6 @@ def cylinder_takes(own: Cylinder, fin: float) -> list[Takes]:
         Takes(f"the liner of '{piston.body}'", "ground", liner, piston.z - fin, piston.z + fin, on),
         *([] if mate else [Takes(f"the head of '{piston.body}'", "ground", head, piston.z - fin, piston.z + fin, on)]),
     ]
-
-
-def box(at: tuple[float, float], along: tuple[float, float], low: float, high: float, half: float) -> Rounded:
-    """Return a rectangle about a line through ``at``, from ``low`` to ``high`` along it and ``half`` to either side."""
-    u, place = np.array(along), np.array(at)
-    left = np.array([-u[1], u[0]])
-    corners = [place + s * u + q * left for s in (low, high) for q in (-half, half)]
-    return around([(float(p[0]), float(p[1])) for p in corners], 1e-6)
 
 
 def meeting(machine: Machine, first: Takes, second: Takes) -> int | None:

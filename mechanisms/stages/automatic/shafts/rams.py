@@ -3,27 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import cadquery as cq
 
-from mechanisms.stages.automatic.layout.planar import Rounded, around
-from mechanisms.stages.automatic.shafts.passing import Takes, box
+from mechanisms.stages.automatic.layout.planar import Rounded, around, box
+from mechanisms.stages.automatic.shafts.bodies import Machine, Ram, RamPin
+from mechanisms.stages.automatic.shafts.passing import Takes
+from mechanisms.stages.automatic.shafts.shaft_plan import Measures
 from mechanisms.stages.automatic.shafts.valves import along_x
 from shared.shapes.build import extruded
 from shared.shapes.kernel import through_holes
 from shared.shapes.outline import circle
 from shared.shapes.solid import Solid, placed
 from shared.stage.errors import UserError
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from mechanisms.stages.automatic.shafts.bodies import Machine, Ram, RamPin
-    from mechanisms.stages.automatic.shafts.shaft_plan import Measures
-
 
 # Bodies that slide on ground, driven in several planes: a beam with clevises on two columns, as of a press (mm).
 #
@@ -135,7 +130,10 @@ class RamPlan:
 
 
 def ram_plans(machine: Machine, measures: Measures, thickness: Mapping[str, float]) -> dict[str, RamPlan]:
-    """Return ram plans by body. Raises UserError naming two links that leave no room for a cheek between them."""
+    """Return ram plans by body.
+
+    Raises UserError naming two links that leave no room for a cheek between them.
+    """
     plans = {}
     cheek = CHEEK * measures.sizes.thickness * measures.unit
     for name, own in machine.rams.items():

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
-from typing import TYPE_CHECKING
 
 from mechanisms.stages.automatic.layout.planar import Rounded, around, least_gap
+from mechanisms.stages.automatic.layout.sizes import Sizes
 from mechanisms.stages.automatic.shafts.bodies import (
     KNUCKLE_EYE,
     SAME,
+    Link,
+    LinkEye,
+    Machine,
+    Mounted,
+    Shaft,
+    Throw,
     carrier,
     carries,
     height_for,
@@ -19,16 +26,8 @@ from mechanisms.stages.automatic.shafts.bodies import (
     middle,
     refuse_near,
 )
-from mechanisms.stages.automatic.shafts.cylinders import BIG_END, CRANK_PIN, ROD, SMALL_END
+from mechanisms.stages.automatic.shafts.cylinders import BIG_END, CRANK_PIN, ROD, SMALL_END, Cylinder
 from shared.stage.errors import UserError
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from mechanisms.stages.automatic.layout.sizes import Sizes
-    from mechanisms.stages.automatic.shafts.bodies import Link, LinkEye, Machine, Mounted, Shaft, Throw
-    from mechanisms.stages.automatic.shafts.cylinders import Cylinder
-
 
 # How thick the links may be: what their distances along the normal leave (mm).
 
@@ -65,7 +64,7 @@ class Measures:
         return min(bores, default=None)
 
     def of_shaft(self, shaft: Shaft) -> float:
-        """Return the bore that a shaft's proportions follow; of a shaft without pistons what goes with its pins."""
+        """Return the bore that a shaft's proportions follow, without pistons what goes with its pins."""
         links = [self.machine.links[throw.link] for throw in shaft.throws if throw.link in self.machine.links]
         bores = [bore for link in links if (bore := self.of_rod(link)) is not None]
         return min(bores, default=self.sizes.pin / (2 * CRANK_PIN) * 1.1)
@@ -114,8 +113,9 @@ class Measures:
 
 
 def thicknesses(measures: Measures) -> dict[str, float]:
-    """Return thicknesses by link. Raises UserError naming both bodies, their distance and what to do where plates do
-    not fit.
+    """Return thicknesses by link.
+
+    Raises UserError naming both bodies, their distance and what to do where plates do not fit.
     """
     machine = measures.machine
     thickness = {name: measures.wished(link) for name, link in machine.links.items()}
@@ -179,9 +179,7 @@ def _shares_pin(a: Link, b: Link) -> bool:
 
 
 def _web_between(measures: Measures, a: Link, b: Link) -> float | None:
-    """Return the bore that goes with a shaft on which two links follow each other, on crank pins at different
-    places.
-    """
+    """Return the bore of a shaft on which two links follow each other on different crank pins."""
     for shaft in measures.machine.shafts.values():
         links = [throw.link for throw in shaft.throws]
         if a.body in links and b.body in links and abs(links.index(a.body) - links.index(b.body)) == 1:
@@ -244,7 +242,10 @@ class Pin:
 
 @dataclass(frozen=True)
 class Web:
-    """From ``low`` to ``high``, between the axis and the pins at its two faces; ``weight``: with a counterweight."""
+    """From ``low`` to ``high``, between the axis and the pins at its two faces.
+
+    ``weight``: with a counterweight.
+    """
 
     low: float
     high: float
@@ -296,7 +297,10 @@ class ShaftPlan:
 
     @property
     def hole(self) -> float:
-        """Radius of the holes through crank pins and their webs; 0 where they would come out in a journal or a pin."""
+        """Radius of the holes through crank pins and their webs.
+
+        0 where they would come out in a journal or a pin.
+        """
         radius = HOLE * self.pin
         near = [math.hypot(pin.x, pin.y) - self.neck for pin in self.pins]
         near += [math.dist((a.x, a.y), (b.x, b.y)) - self.pin for a, b in pairwise(self.pins) if self._flies(a, b)]
@@ -361,8 +365,10 @@ def shaft_plan(
     cylinders: Mapping[str, Cylinder],
     mounted: Sequence[Mounted] = (),
 ) -> ShaftPlan:
-    """Plan a shaft. Raises UserError naming two links that are too near along z for a web between them, and
-    wheels that have no room on it.
+    """Plan a shaft.
+
+    Raises UserError naming two links that are too near along z for a web between them, and wheels that have no room on
+    it.
     """
     on_it = tuple(sorted(mounted, key=lambda part: part.z))
     if not shaft.throws:
@@ -404,8 +410,9 @@ def _refuse_mounted(name: str, plan: ShaftPlan) -> None:
 
 
 def _plain(shaft: Shaft, measures: Measures, mounted: Sequence[Mounted], unit: float) -> ShaftPlan:
-    """Return a shaft without throws: a rod with bearings between what sits on it; wheels at its ends are beyond the
-    last.
+    """Return a shaft without throws: a rod with bearings between what sits on it.
+
+    Wheels at its ends are beyond the last.
     """
     room = min(part.inner for part in mounted)
     pin = min(CRANK_PIN * unit, PLAIN * room / JOURNAL)
@@ -445,8 +452,9 @@ def _plain(shaft: Shaft, measures: Measures, mounted: Sequence[Mounted], unit: f
 
 
 def _pins(shaft: Shaft, thickness: Mapping[str, float], gap: float, most: float) -> list[Pin]:
-    """Return groups of links that share a pin: at one place, they follow each other along z, where less than ``most``
-    is between them.
+    """Return groups of links that share a pin.
+
+    At one place they follow each other along z, where less than ``most`` is between them.
     """
     groups: list[list[Throw]] = []
     for throw in shaft.throws:
@@ -466,7 +474,10 @@ def _pins(shaft: Shaft, thickness: Mapping[str, float], gap: float, most: float)
 
 
 def _between(measures: Measures, shaft: Shaft, pins: list[Pin], unit: float) -> tuple[list[Web], list[Journal]]:
-    """Return webs and journals between the crank pins; the first and the last web stand for those at the ends."""
+    """Return webs and journals between the crank pins.
+
+    The first and the last web stand for those at the ends.
+    """
     spaces = [after.low - before.high for before, after in pairwise(pins)]
     thick = min([WEB * unit, *(SHARE * space for space in spaces if space >= _both(unit))])
     end = Web(0.0, thick, (), True)

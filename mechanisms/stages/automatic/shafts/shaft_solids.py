@@ -7,24 +7,19 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 
 from mechanisms.stages.automatic.body_shapes import first_made
-from mechanisms.stages.automatic.shafts.shaft_plan import THIN
+from mechanisms.stages.automatic.shafts.bodies import Link, LinkEye, Machine, Shaft
+from mechanisms.stages.automatic.shafts.shaft_plan import THIN, Pin, ShaftPlan, Web
 from shared.contract.materials import MATERIALS
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded, turned
+from shared.shapes.outline import Circle
+from shared.shapes.solid import Solid
 from shared.shapes.units import cubic_metres, mm
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.shafts.bodies import Link, LinkEye, Machine, Shaft
-    from mechanisms.stages.automatic.shafts.shaft_plan import Pin, ShaftPlan, Web
-    from shared.shapes.outline import Circle
-    from shared.shapes.solid import Solid
-
 
 # A shaft as one solid: journals, webs with counterweights, crank pins, a snout and a flange (mm).
 
@@ -33,8 +28,9 @@ INTO = 0.3
 
 
 def shaft_solid(plan: ShaftPlan, webs: Sequence[cq.Workplane], flywheel: float = 0.0) -> cq.Workplane:
-    """Return the shaft in its body's frame with these webs; ``flywheel`` is the radius of a disc at its lower end, 0
-    for none.
+    """Return the shaft in its body's frame with these webs.
+
+    ``flywheel`` is the radius of a disc at its lower end, 0 for none.
     """
     if not plan.pins:
         return _plain(plan)
@@ -172,8 +168,9 @@ class Load:
 
 
 def loads(machine: Machine, shaft: Shaft, made: Mapping[str, Sequence[Solid]]) -> list[Load]:
-    """Return one for each link on the shaft; masses are those that the model gives, else those of the solids in
-    ``made``.
+    """Return one for each link on the shaft.
+
+    Masses are those that the model gives, else those of the solids in ``made``.
     """
     on_pins = []
     for throw in shaft.throws:
@@ -186,7 +183,7 @@ def loads(machine: Machine, shaft: Shaft, made: Mapping[str, Sequence[Solid]]) -
 
 
 def _on_pin(machine: Machine, link: Link, on: LinkEye, made: Mapping[str, Sequence[Solid]]) -> float:
-    """Return the mass on a pin (kg): of a link, of the piston that it drives, and of rods on it that drive others."""
+    """Return the mass on a pin (kg): of a link, the piston that it drives, and rods that it carries."""
     mass, com = _mass(machine, link.body, made)
     others = [eye for eye in link.eyes if eye is not on and math.hypot(eye.x - on.x, eye.y - on.y) > 0]
     far = next((eye for eye in others if eye.on in machine.pistons), None) or max(
@@ -239,7 +236,7 @@ STEPS, ENOUGH = 4, 2e-4
 
 
 def balanced_webs(plan: ShaftPlan, loads: Sequence[Load], density: float) -> list[cq.Workplane]:
-    """Return all webs of a shaft of that density (kg/m^3), with counterweights where there is room for them."""
+    """Return the webs of a shaft of that density (kg/m^3), with counterweights where they have room."""
     webs = [web_solid(plan, web) for web in plan.webs]
     if not plan.has_weights:
         return webs
@@ -320,8 +317,9 @@ BEYOND = 0.01
 
 
 def built_up(shape: cq.Workplane, plan: ShaftPlan, pins: Sequence[Pin]) -> list[cq.Workplane]:
-    """Return pieces of a shaft from its lower end up, one more than ``pins``; each of these belongs to the piece
-    below.
+    """Return pieces of a shaft from its lower end up, one more than ``pins``.
+
+    Each of these belongs to the piece below.
     """
     pieces = [shape]
     far = 4 * (plan.swept + plan.top - plan.ends[0])

@@ -5,15 +5,24 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
+import cadquery as cq
 import numpy as np
 
 from mechanisms.stages.automatic.assembly import kernel_refusals, materials
 from mechanisms.stages.automatic.layout.plan import free_name
 from mechanisms.stages.automatic.layout.planar import convex_hull
+from mechanisms.stages.automatic.shafts.along import Along
 from mechanisms.stages.automatic.shafts.bearings import bore_of
-from mechanisms.stages.automatic.shafts.bodies import KNUCKLE_PIN, flange, is_carrier, knuckle_eyes, rod_foot
+from mechanisms.stages.automatic.shafts.bodies import (
+    KNUCKLE_PIN,
+    Link,
+    LinkEye,
+    flange,
+    is_carrier,
+    knuckle_eyes,
+    rod_foot,
+)
 from mechanisms.stages.automatic.shafts.cylinder_solids import (
     PistonSize,
     bank_solids,
@@ -40,6 +49,7 @@ from mechanisms.stages.automatic.shafts.shaft_solids import balanced_webs, built
 from mechanisms.stages.automatic.shafts.valves import cam_shape, valve_solids
 from mechanisms.stages.automatic.shafts.wheels import wheel_solids
 from mechanisms.stages.automatic.standing import BackPlate, Upright
+from shared.contract import Mount
 from shared.contract.materials import MATERIALS
 from shared.shapes.base import base_plate
 from shared.shapes.build import eased, extruded
@@ -47,14 +57,6 @@ from shared.shapes.kernel import through_holes
 from shared.shapes.link import Eye
 from shared.shapes.outline import circle, hull
 from shared.shapes.solid import Solid, placed
-
-if TYPE_CHECKING:
-    import cadquery as cq
-
-    from mechanisms.stages.automatic.shafts.along import Along
-    from mechanisms.stages.automatic.shafts.bodies import Link, LinkEye
-    from shared.contract import Mount
-
 
 PLATE, FOOT, MARGIN, INSET, ROUND = 10.0, 3.0, 14.0, 11.0, 8.0
 """Base plate: thickness, height of its feet, what it reaches beyond all that stands on it, place of its feet,
@@ -98,8 +100,9 @@ def _named(made: dict[str, list[Solid]], tolerance: float | None) -> dict[str, l
 
 
 def plate_of(own: Along, mount: Mount, base_under: Sequence[tuple[float, float]] = ()) -> BackPlate:
-    """Return the base plate, below all that moves and round all that stands on it: a rectangle, or on a stand its
-    hull.
+    """Return the base plate, below all that moves and round all that stands on it.
+
+    It is a rectangle, or on a stand its hull.
     """
     unit, upright = own.measures.unit, Upright.from_mount(mount)
     places = np.array([upright.seen_place(x, y) for x, y in (*own.feet, *base_under)])
@@ -198,7 +201,10 @@ def _piston(own: Along, body: str, material: str) -> list[Solid]:
 
 
 def _link(own: Along, link: Link, material: str, is_wished: bool) -> list[Solid]:
-    """Return a rod where it has two eyes and drives a piston, else a plate; split at its crank pin where it can be."""
+    """Return a rod where it has two eyes and drives a piston, else a plate.
+
+    Split at its crank pin where it can be.
+    """
     thickness, bore = own.thickness[link.body], own.measures.of_rod(link)
     eyes, bottom, knuckle_pins = _eyes(own, link), link.z - thickness / 2, list[Solid]()
     cuts, main = _cuts(own, link, eyes), rod_foot(own.machine, link)

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import cadquery as cq
 import numpy as np
 
+from mbsd.model.force import Force
 from mechanisms.stages.automatic.cams import cut_outline
-from mechanisms.stages.automatic.layout.planar import around
+from mechanisms.stages.automatic.layout.planar import around, box
 from mechanisms.stages.automatic.layout.sizes import CLEAR
-from mechanisms.stages.automatic.shafts.bodies import Mounted, marker_on, place
-from mechanisms.stages.automatic.shafts.cylinders import HEAD
-from mechanisms.stages.automatic.shafts.passing import Takes, box
+from mechanisms.stages.automatic.shafts.bodies import Machine, Mounted, Valve, marker_on, place
+from mechanisms.stages.automatic.shafts.cylinders import HEAD, Cylinder
+from mechanisms.stages.automatic.shafts.passing import Takes
+from mechanisms.stages.automatic.shafts.shaft_plan import Measures
 from shared.shapes.build import extruded, turned
 from shared.shapes.cams import cam_disc, evenly
 from shared.shapes.outline import circle
@@ -21,17 +24,6 @@ from shared.shapes.solid import Hold, Solid, placed
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    import cadquery as cq
-
-    from mbsd.model.force import Force
-    from mechanisms.stages.automatic.shafts.bodies import Machine, Valve
-    from mechanisms.stages.automatic.shafts.cylinders import Cylinder
-    from mechanisms.stages.automatic.shafts.shaft_plan import Measures
-
 
 # Valves over cylinders, and the cams of the shafts that push them (mm).
 #
@@ -130,8 +122,9 @@ class ValvePlan:
 
 
 def valve_plans(machine: Machine, measures: Measures, cylinders: Mapping[str, Cylinder]) -> dict[str, ValvePlan]:
-    """Return valve plans by body. Raises UserError naming a valve that is over no cylinder, has no room in one, or
-    stands too low.
+    """Return valve plans by body.
+
+    Raises UserError naming a valve that is over no cylinder, has no room in one, or stands too low.
     """
     over = {name: _cylinder(machine, valve, cylinders) for name, valve in machine.valves.items()}
     plans = {}
@@ -178,8 +171,9 @@ def _cylinder(machine: Machine, valve: Valve, cylinders: Mapping[str, Cylinder])
 
 
 def _cam(machine: Machine, valve: Valve) -> tuple[np.ndarray, tuple[float, float], float]:
-    """Return the outline and centre in the frame of its shaft, least radius. Raises UserError for what cannot be
-    cut.
+    """Return the outline and centre in the frame of its shaft, least radius.
+
+    Raises UserError for what cannot be cut.
     """
     joint = machine.m.joints[valve.cam]
     marker = marker_on(joint, valve.shaft)
@@ -235,7 +229,7 @@ def along_x(shape: cq.Workplane) -> cq.Workplane:
 
 
 def valve_solids(own: ValvePlan) -> list[Solid]:
-    """Return a valve with its tappet in one piece, and the retainers of its springs, in the frame of its body."""
+    """Return a valve with its tappet, and its springs' retainers, in the frame of its body."""
     b, r, stem = own.bore, own.radius, STEM * own.bore
     c = 0.01 * b
     low, face = own.low, own.face
@@ -262,7 +256,10 @@ def _in_frame(own: ValvePlan, shape: cq.Workplane) -> cq.Workplane:
 
 
 def port_shape(own: ValvePlan, high: float) -> cq.Workplane:
-    """Return what a valve cuts out of a head whose upper face is at s = ``high``: recess, port and guide, about x."""
+    """Return what a valve cuts out of a head with its upper face at s = ``high``, about x.
+
+    That is recess, port and guide.
+    """
     b, start, gap = own.bore, own.cylinder.top - 1.0, own.running
     recess = own.low + CONE * b + gap
     throat = min(recess + 0.55 * HEAD * b, high - 0.02 * b)

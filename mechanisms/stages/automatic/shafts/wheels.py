@@ -3,34 +3,26 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
+from mbsd.model.joint import Joint
 from mbsd.model.teeth import with_radii
 from mechanisms.stages.automatic.assembly import scaled
 from mechanisms.stages.automatic.layout.layout import Layout
 from mechanisms.stages.automatic.layout.planar import Rounded, disc
-from mechanisms.stages.automatic.shafts.bodies import SAME, Mounted, place, plane
+from mechanisms.stages.automatic.shafts.bodies import SAME, Machine, Mounted, place, plane
 from mechanisms.stages.automatic.shafts.passing import Takes
+from mechanisms.stages.automatic.shafts.shaft_plan import Measures
 from mechanisms.stages.automatic.wheels.gears import Mesh, in_phase, refuse_apart, wheel_at
-from mechanisms.stages.automatic.wheels.pulleys import BELT, Pulley, belt_of, rim_of
-from mechanisms.stages.automatic.wheels.wheels import HUB, shape_of
+from mechanisms.stages.automatic.wheels.pulleys import BELT, Belt, Pulley, belt_of, rim_of
+from mechanisms.stages.automatic.wheels.wheels import HUB, Wheel, shape_of
 from shared.shapes.kernel import through_holes
 from shared.shapes.link import Eye
 from shared.shapes.solid import Solid, placed
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.shafts.bodies import Machine
-    from mechanisms.stages.automatic.shafts.shaft_plan import Measures
-    from mechanisms.stages.automatic.wheels.pulleys import Belt
-    from mechanisms.stages.automatic.wheels.wheels import Wheel
-
 
 # Gears and pulleys on shafts, each in the plane of its joint: in phase, and with the room of their belts (mm).
 #
@@ -63,21 +55,14 @@ class ShaftWheel:
 
 
 @dataclass(frozen=True, eq=False)
-class ShaftBelt:
-    """A belt (rmm) and the plane of its middle (mm)."""
-
-    belt: Belt
-    z: float
-
-
-@dataclass(frozen=True, eq=False)
 class Wheels:
     """All wheels and belts of a machine."""
 
     machine: Machine
     measures: Measures
     every: list[ShaftWheel] = field(default_factory=list)
-    belts: list[ShaftBelt] = field(default_factory=list)
+    belts: list[tuple[Belt, float]] = field(default_factory=list)
+    """Belts (rmm), each with the plane of its middle (mm)."""
 
     def wheels_on(self, body: str) -> list[ShaftWheel]:
         """Return the wheels of a shaft, each once."""
@@ -91,12 +76,12 @@ class Wheels:
             mates = frozenset(mate.body for mate in wheel.mates if hasattr(mate, "body"))
             shape = disc(wheel.x * unit, wheel.y * unit, own.outside)
             yield Takes(wheel.what, wheel.body, shape, own.mounted.low, own.mounted.high, mates)
-        for own in self.belts:
-            on = frozenset(pulley.body for pulley in own.belt.pulleys)
-            for item in own.belt.items(self.layout):
+        for belt, z in self.belts:
+            on = frozenset(pulley.body for pulley in belt.pulleys)
+            for item in belt.items(self.layout):
                 shape = Rounded(item.shape.core * unit, item.shape.radius * unit)
                 half = 2 * BELT * unit
-                yield Takes(item.what, item.body, shape, own.z - half, own.z + half, on)
+                yield Takes(item.what, item.body, shape, z - half, z + half, on)
 
     @cached_property
     def layout(self) -> Layout:
@@ -108,7 +93,10 @@ class Wheels:
 
 
 def wheels(machine: Machine, measures: Measures) -> Wheels:
-    """Find them. Raises UserError naming a joint whose wheels are on no shaft, in no plane or in two, or apart."""
+    """Find them.
+
+    Raises UserError naming a joint whose wheels are on no shaft, in no plane or in two, or apart.
+    """
     made = Wheels(machine, measures)
     layout, thickness = made.layout, measures.sizes.thickness * measures.unit
     planes: list[tuple[float, list[Wheel]]] = []
@@ -121,7 +109,7 @@ def wheels(machine: Machine, measures: Measures) -> Wheels:
         if joint.kind.name == BELTS:
             belt = belt_of(machine.m, joint, layout)
             in_plane += belt.pulleys
-            made.belts.append(ShaftBelt(belt, z))
+            made.belts.append((belt, z))
             continue
         sized = with_radii(joint.params)
         first, second = (
@@ -138,7 +126,10 @@ def wheels(machine: Machine, measures: Measures) -> Wheels:
 
 
 def _joints(machine: Machine) -> list[Joint]:
-    """Return gears and belts. Raises UserError for a ring gear, and for a wheel whose centre is no shaft's axis."""
+    """Return gears and belts.
+
+    Raises UserError for a ring gear, and for a wheel whose centre is no shaft's axis.
+    """
     joints = []
     for joint in machine.m.joints.values():
         if joint.kind.name not in (GEARS, BELTS) or machine.left_out.intersection(joint.bodies):
@@ -190,8 +181,9 @@ SEAT = 0.02
 
 
 def wheel_solids(own: ShaftWheel, shaft: float, seat: float) -> list[Solid]:
-    """Return a wheel on a shaft of that radius, in the frame of its body; ``seat`` (rmm) is between a pulley and its
-    rim.
+    """Return a wheel on a shaft of that radius, in the frame of its body.
+
+    ``seat`` (rmm) is between a pulley and its rim.
     """
     wheel, unit = own.wheel, own.unit
     thickness, low = own.thickness / unit, own.mounted.low / unit

@@ -1,4 +1,4 @@
-"""Point on a curve: a slot along the part of the curve that the pin's roller runs through, or a groove all round.
+"""Point on a curve: a slot along the part that the pin's roller runs through, or a groove all round.
 
 A closed curve that is run all round would cut its plate in two, so it is a groove in the face that the pin comes from.
 Where the point keeps a distance from the curve, the slot is at that distance. Beyond the ends of an open curve it goes
@@ -10,28 +10,22 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from mbsd import Mechanism, Solution
+from mbsd.model.joint import Joint
 from mechanisms.stages.automatic.layout.curves import continued, curve_path, end_ways, evenly, followed, on_body
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import build, kind
+from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Plan, build, kind
 from mechanisms.stages.automatic.layout.planar import convex_hull, disc
 from mechanisms.stages.automatic.layout.sizes import Extent, extent
 from mechanisms.stages.automatic.slides.slots import Slot, channelled, entered, slotted
 from shared.shapes.outline import normals, sharpest
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism, Solution
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
 
 STEP, MOST, FINEST = 2.0, 240, 960
 """Between places of a slot (rmm), and how many there are at most; as many as FINEST where fewer would stray."""
@@ -116,7 +110,7 @@ def _slot(m: Mechanism, joint: Joint, layout: Layout) -> CurvedSlot:
 
 
 def _refuse_near_itself(m: Mechanism, joint: Joint, path: np.ndarray, closed: bool, layout: Layout) -> None:
-    """Raise UserError where two stretches of a slot come so near to each other that no wall is left between them."""
+    """Raise UserError where two stretches of a slot come so near that no wall is left between them."""
     sizes = layout.sizes
     roller, apart = sizes.roller, sizes.roller + sizes.pivot.fit.running + BETWEEN
     way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
@@ -150,7 +144,9 @@ def _offset(joint: Joint) -> np.ndarray:
 def _run_through(
     whole: np.ndarray, ways: np.ndarray | None, seen: np.ndarray, layout: Layout
 ) -> tuple[np.ndarray, bool]:
-    """Return the part of a path where the pin comes, with a little more at its ends; and whether that is all of a loop.
+    """Return the part of a path where the pin comes, and True if that is all of a loop.
+
+    The part has a little more at its ends.
 
     ``ways`` lead on from both ends of an open path.
     """

@@ -6,27 +6,20 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd import Mechanism, Solution
+from mbsd.model.joint import Joint
 from mechanisms.stages.automatic.layout import motion
-from mechanisms.stages.automatic.layout.items import BASE, Anchor, Item, Need, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot, build, kind
+from mechanisms.stages.automatic.layout.items import BASE, Anchor, Heights, Item, Levels, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Foot, Plan, build, kind
 from mechanisms.stages.automatic.layout.planar import Rounded, core_gaps, disc
 from mechanisms.stages.automatic.layout.sizes import Extent, extent
 from mechanisms.stages.automatic.slides.slides import HALF_LENGTH, POST, RAIL, Slide, bar
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism, Solution
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-
 
 # Slides on ground whose rails would cross, as of an elliptical trammel: a plate with grooves, and shuttles in them.
 #
@@ -133,7 +126,10 @@ def with_crossings(slides: Sequence[Slide], layout: Layout) -> list[Feature]:
 
 
 def _crossing(first: Slide, second: Slide) -> np.ndarray | None:
-    """Return (2,) where two rails would cross; None where they stay clear of each other, or are nearly parallel."""
+    """Return (2,) where two rails would cross.
+
+    None where they stay clear of each other, or are nearly parallel.
+    """
     if first.block == second.block:
         return None
     (a, b), (c, d) = (np.array(slide.rail_ends()) for slide in (first, second))
@@ -258,7 +254,7 @@ def _rail_distance(layout: Layout) -> float:
 
 
 def _may_share(slide: Slide, other: Slide, line: Slide, layout: Layout) -> bool:
-    """Return True if two overlapping rails can be one: the blocks never meet, and no stop is in the way of either."""
+    """Return True if two overlapping rails can be one: blocks never meet, no stop is in the way."""
     first, second = _span(slide, line), _span(other, line)
     if min(first[1], second[1]) - max(first[0], second[0]) < -_rail_distance(layout):
         return False
@@ -301,8 +297,10 @@ BESIDE = 0.5
 
 @kind("prismatic")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """Return one feature for each joint, but one for those on ground that cross, and for those of two bodies along one
-    line; several blocks along one line have a common rail where they can.
+    """Return one feature for each joint, or for several that belong together.
+
+    Those on ground that cross are one, and those of two bodies along one line; several blocks along one line have a
+    common rail where they can.
     """
     slides: list[Slide] = []
     for joint in joints:

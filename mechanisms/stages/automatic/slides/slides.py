@@ -5,26 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 
 from mechanisms.stages.automatic.layout import motion
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot, build
+from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Levels, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Foot, Plan, build
 from mechanisms.stages.automatic.layout.planar import Rounded
 from mechanisms.stages.automatic.layout.sizes import CLEAR
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded
 from shared.shapes.solid import placed
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-
 
 # Prismatic joints: a block with two gibs on a rail, which is on the body of the first marker.
 #
@@ -53,7 +46,7 @@ WALL = 3.0
 
 @dataclass(frozen=True, eq=False)
 class Slide(Feature):
-    """A rail on one body and a block on another: places and directions (rmm, rad) in their frames, and the travel."""
+    """A rail on one body and a block on another: places, directions (rmm, rad) and the travel."""
 
     name: str
     rail: str
@@ -221,14 +214,10 @@ def fixed_block(slide: Slide, plan: Plan, heights: Heights) -> None:
 def moving_rail(slide: Slide, plan: Plan, heights: Heights) -> None:
     """A rail on a moving plate, on the side where the block is."""
     fit = plan.layout.sizes.pivot.fit
-    if heights.levels[slide.rail] < heights.levels[slide.block]:
-        z0, z1 = heights.top(slide.rail) + fit.seat, heights.bottom(slide.block) - fit.axial
-        face = heights.bottom(slide.block) - fit.seat
-        gibs = face - DEPTH, face
-    else:
-        z0, z1 = heights.top(slide.block) + fit.axial, heights.bottom(slide.rail) - fit.seat
-        face = heights.top(slide.block) + fit.seat
-        gibs = face, face + DEPTH
+    z0, z1 = heights.between(slide.rail, slide.block, fit.seat, fit.axial)
+    low, high = heights.between(slide.rail, slide.block, 0.0, fit.seat)
+    above = heights.levels[slide.rail] < heights.levels[slide.block]
+    gibs = (high - DEPTH, high) if above else (low, low + DEPTH)
     if not slide.host:
         plan.make(slide.rail, f"rail_{slide.name}", _bar(slide.rail_ends(), RAIL / 2, z0, z1), "steel", 0)
         _stops(slide, z0, z1, plan)

@@ -6,14 +6,16 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Protocol
 
+import cadquery as cq
 import numpy as np
 
+from mbsd import Mechanism
+from mbsd.model.joint import Joint
 from mechanisms.stages.automatic.layout import motion
-from mechanisms.stages.automatic.layout.items import BASE, Anchor, Item, Need, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot, build, kind
+from mechanisms.stages.automatic.layout.items import BASE, Anchor, Heights, Item, Levels, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Foot, Plan, build, kind
 from mechanisms.stages.automatic.layout.planar import around, convex_hull, disc
 from mechanisms.stages.automatic.pins.pin_solids import boss_height, holding_eye, standing
 from mechanisms.stages.automatic.pins.pins import SAME, Pin
@@ -25,64 +27,21 @@ from shared.shapes.solid import Roll, Solid, placed
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
 
-if TYPE_CHECKING:
-    import cadquery as cq
-
-    from mbsd import Mechanism
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights, Levels
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-
-
 # A pin that runs in several slots: one pin of its body, with a roller in each of them.
 #
 # A crank that moves two yokes, or indexes two Geneva wheels, has its slots on one side of it or on both.
 
 
-class InSlot(Protocol):
-    """A pin in a slot: a joint's name, the bodies of slot and pin, and the pin's place on its body (rmm)."""
-
-    @property
-    def name(self) -> str:
-        """Name of the joint."""
-        ...
-
-    @property
-    def slot(self) -> str:
-        """The body that has the slot."""
-        ...
-
-    @property
-    def pin(self) -> str:
-        """The body that has the pin."""
-        ...
-
-    @property
-    def pin_at(self) -> tuple[float, float]:
-        """Where the pin is on its body (rmm)."""
-        ...
-
-    @property
-    def layer(self) -> str:
-        """Name that decides the layer of the slot."""
-        ...
-
-
-def common(slot: InSlot, layout: Layout) -> list[InSlot]:
+def common(slot: Slot, layout: Layout) -> list[Slot]:
     """Return all through slots in which the pin of ``slot`` runs, this one among them."""
-    through: list[InSlot] = [
-        s for s in (getattr(feature, "runs_through", None) for feature in layout.features) if s is not None
-    ]
+    every = (getattr(feature, "runs_through", None) for feature in layout.features)
+    through = [other for other in every if isinstance(other, Slot)]
     return [other for other in through if other.pin == slot.pin and math.dist(other.pin_at, slot.pin_at) < SAME]
 
 
-def passed(slot: InSlot, layout: Layout) -> frozenset[str]:
+def passed(slot: Slot, layout: Layout) -> frozenset[str]:
     """Return names of the items that the pin passes through by design."""
-    names = [
-        (other.slot, f"the slotted plate of {other.name}", f"the wheel of {other.name}")
-        for other in common(slot, layout)
-    ]
+    names = ((o.slot, f"the slotted plate of {o.name}", f"the wheel of {o.name}") for o in common(slot, layout))
     return frozenset(name for here in names for name in here)
 
 
@@ -118,7 +77,7 @@ WALL = 7.0
 
 @dataclass(frozen=True, eq=False)
 class Slot(Feature):
-    """Places (rmm) of the pin on its body, and of the slot on the other: the way of the pin's middle in it."""
+    """Places (rmm) of a pin on its body and of its slot on the other, as the way of the pin's middle."""
 
     name: str
     slot: str
@@ -169,8 +128,9 @@ class Slot(Feature):
         return [*places, Anchor(self.pin, *self.pin_at, layout.sizes.eye)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """Yield the pin from its body, or the base, through the slot, and its head; a plate on ground, with its
-        posts.
+        """Yield the pin from its body, or the base, through the slot, and its head.
+
+        Where the slot is on ground, its plate and posts follow.
         """
         shape, what = disc(*self.pin_at, layout.sizes.hardware), f"the pin of {self.name}"
         plate = f"the slotted plate of {self.name}"
@@ -192,7 +152,8 @@ class Slot(Feature):
         return self.needs_under(self, levels, layout)
 
     def needs_under(self, source: object, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Yield the room for a washer between the plates, and for the head above where the pin comes from below;
+        """Yield the room for a washer between the plates, and for the head of a pin from below.
+
         ``source`` is the feature that has the slot.
         """
         fit, pivot = layout.sizes.pivot.fit, layout.sizes.pivot
@@ -219,9 +180,7 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
 
 
 def _ends(joint: Joint, m: Mechanism, travel: tuple[float, float], layout: Layout) -> tuple[float, float]:
-    """Return ends of the way of the roller's middle in the slot (rmm): limits that are near, for the slot ends
-    there.
-    """
+    """Return ends of the roller's way in the slot (rmm): near limits, for the slot ends there."""
     lower, upper = (None if end is None else layout.sizes.of_metres(end) for end in motion.sliding(joint, m))
     lower, upper = motion.reached((lower, upper), travel, FAR * layout.sizes.roller)
     return travel[0] - 1.0 if lower is None else lower, travel[1] + 1.0 if upper is None else upper
@@ -256,7 +215,7 @@ CHANNEL = 4.6
 
 @build.register(Slot)
 def slotted(slot: Slot, plan: Plan, heights: Heights) -> None:
-    """Cut the slot, and put a pin with a roller through it: from below with its head on top, from above hanging."""
+    """Cut the slot, and put a pin with a roller through it: head on top from below, else hanging."""
     sizes = plan.layout.sizes
     tool = _tool(slot.path, (sizes.roller + sizes.pivot.fit.running) / 2, heights.thickness + 2.0).translate((0, 0, -1))
     if slot.slot == "ground":
@@ -319,7 +278,7 @@ def slot_pin(
     In a groove of a ``depth`` the pin ends. Through slots at one place of the body have one pin. With a
     ``roller_diameter`` of 0 the pin is bare.
     """
-    through: list[InSlot] = [slot] if roller_diameter is not None or depth is not None else common(slot, plan.layout)
+    through: list[Slot] = [slot] if roller_diameter is not None or depth is not None else common(slot, plan.layout)
     outer = plan.layout.sizes.roller if roller_diameter is None else roller_diameter
     large = outer > plan.layout.sizes.head.diameter + 2 * SEEN
     if outer > 0:
@@ -328,7 +287,7 @@ def slot_pin(
         _pin(through, large, depth, plan, heights)
 
 
-def _is_below(slot: InSlot, heights: Heights) -> bool:
+def _is_below(slot: Slot, heights: Heights) -> bool:
     """Return True if the pin comes from below."""
     return slot.pin == "ground" or heights.bottom(slot.pin) < heights.bottom(slot.layer)
 
@@ -359,8 +318,8 @@ def _no_wall(slot: Slot, outer: float, layout: Layout) -> str:
     )
 
 
-def _pin(through: list[InSlot], large: bool, depth: float | None, plan: Plan, heights: Heights) -> None:
-    """From the lowest to the highest of the slots, or from its body, with a boss and a washer on each side of that."""
+def _pin(through: list[Slot], large: bool, depth: float | None, plan: Plan, heights: Heights) -> None:
+    """Add the pin through all of its slots, from its body, with a boss and a washer on either side."""
     sizes = plan.layout.sizes
     pivot, fit, first = sizes.pivot, sizes.pivot.fit, through[0]
     body, (x, y) = first.pin, first.pin_at

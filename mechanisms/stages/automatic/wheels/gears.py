@@ -1,4 +1,4 @@
-"""Gear pairs and trains of gears: numbers of teeth, layers that wheels share, and the joints that enter them."""
+"""Gear pairs and trains: numbers of teeth, layers that wheels share, and the joints with them."""
 
 from __future__ import annotations
 
@@ -6,14 +6,16 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd import Mechanism, Solution
+from mbsd.model.body import Marker
+from mbsd.model.force import Force
 from mbsd.model.joint import Joint
 from mbsd.model.teeth import with_radii
 from mechanisms.stages.automatic.layout.items import Item, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
 from mechanisms.stages.automatic.layout.plan import FORCE_KINDS, force_kind, kind
 from mechanisms.stages.automatic.layout.sizes import Extent, extent
 from mechanisms.stages.automatic.pins.pins import SAME
@@ -26,13 +28,6 @@ from shared.shapes.units import mm
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
 
-if TYPE_CHECKING:
-    from mbsd import Mechanism, Solution
-    from mbsd.model.body import Marker
-    from mbsd.model.force import Force
-    from mechanisms.stages.automatic.layout.layout import Layout
-
-
 # The wheel that lies in its body's layer: the largest, unless something else is in the way.
 #
 # A cam, a wheel on a road or a Geneva wheel fills its body's layer: what touches it would meet the teeth. An arm does
@@ -41,8 +36,9 @@ if TYPE_CHECKING:
 
 
 def enter(wheels: Sequence[Wheel], layout: Layout) -> None:
-    """Enter the wheels by their bodies; of each the largest lies in its layer, unless a ring's bottom or, of pulleys,
-    an arm does: a belt would run through that.
+    """Enter the wheels by their bodies; of each body the largest lies in its layer.
+
+    Not so where a ring's bottom or, of pulleys, an arm does: a belt would run through that.
     """
     by_body: dict[str, list[Wheel]] = {}
     for wheel in wheels:
@@ -56,12 +52,11 @@ def enter(wheels: Sequence[Wheel], layout: Layout) -> None:
 
 
 def with_own_layers(layout: Layout, beside_arms: bool) -> Layout:
-    """Return the layout, all of whose features are known, with wheels on tubes where their body's layer has no room;
-    ``beside_arms``: also where an arm is in the way of their mates.
+    """Return the layout with wheels on tubes where their body's layer has no room.
+
+    All features must be known. ``beside_arms``: also where an arm is in the way of their mates.
     """
-    wheels = [
-        wheel for wheel in layout.features if isinstance(wheel, Wheel) and wheel.body != "ground" and wheel.shares
-    ]
+    wheels = [wheel for wheel in layout.select(Wheel) if wheel.body != "ground" and wheel.shares]
     wide = [wheel for wheel in wheels if wheel.radius >= LEAST_ON_TUBE]
     filled = {getattr(feature, "fills", "") for feature in layout.features}
     beside = [wheel for wheel in wide if wheel.body not in filled and beside_arms and _meets_an_arm(wheel, layout)]
@@ -74,7 +69,7 @@ def with_own_layers(layout: Layout, beside_arms: bool) -> Layout:
 def _meets_an_arm(wheel: Wheel, layout: Layout) -> bool:
     """Return True if its mates, or its belt, meet what else its body has in its layer."""
     mates: list[object] = [*wheel.mates]
-    mates += [belt for belt in layout.features if isinstance(belt, Belt) and wheel in belt.pulleys]
+    mates += [belt for belt in layout.select(Belt) if wheel in belt.pulleys]
     near = [item for item in layout.items if item.source in mates and item.body != wheel.body]
     own = [item for item in layout.items if item.body == wheel.body and item.source is not wheel]
     own = [item for item in own if _is_always_in(item, wheel.body)]
@@ -87,7 +82,7 @@ def _is_always_in(item: Item, layer: str) -> bool:
 
 
 def _has_arm(wheel: Wheel, layout: Layout) -> bool:
-    """Return True if a joint, a spring, a traced point or a bar's end is on a pulley's body beyond the pulley."""
+    """Return True if a joint, spring, traced point or bar's end is on a pulley's body beyond it."""
     if not isinstance(wheel, Pulley):
         return False
     m, body = layout.m, layout.m.bodies[wheel.body]
@@ -112,9 +107,10 @@ FEWEST, MOST = 8, 400
 
 
 def module_of(radii: Sequence[float]) -> float | None:
-    """Return the module (mm) for wheels that mesh with each other, from their pitch radii (mm): a standard one if it
-    gives whole numbers of teeth; else the one that gives them nearest to :data:`WISH`; None where the radii allow no
-    whole numbers.
+    """Return the module (mm) for wheels that mesh with each other, from their pitch radii (mm).
+
+    It is a standard one if that gives whole numbers of teeth, else the one that gives them nearest to :data:`WISH`;
+    None where the radii allow no whole numbers.
     """
     smallest, largest = min(radii), max(radii)
     fitting = [m for m in STANDARD if all(_whole(2 * radius / m) for radius in radii)]
@@ -216,8 +212,9 @@ def _refuse_foul(m: Mechanism, mesh: Mesh) -> None:
 
 
 def _tip(gear: Toothed) -> float:
-    """Return the tip radius of a wheel, tip height of a rack: teeth are shorter where they would reach below a base
-    circle.
+    """Return the tip radius of a wheel, or the tip height of a rack.
+
+    Teeth are shorter where they would reach below a base circle.
     """
     if isinstance(gear, Rack):
         return min(ADDENDUM * gear.module, *(longest_rack_tip(pinion.radius) for pinion in gear.mates))
@@ -229,7 +226,7 @@ def _tip(gear: Toothed) -> float:
 
 
 def _mesh(m: Mechanism, train: list[Toothed], meshes: Sequence[Mesh], layout: Layout) -> None:
-    """Phases from one to the next: where two touch, a tooth of one stands in a space of the other at the start."""
+    """Set phases one after the other: where two touch, a tooth of one stands in a space of the other."""
     train[0].phase = 0.0
     waiting = [train[0]]
     while waiting:
@@ -255,7 +252,7 @@ def _mesh(m: Mechanism, train: list[Toothed], meshes: Sequence[Mesh], layout: La
 
 
 def _phase_of(gear: Toothed, mate: Toothed, layout: Layout) -> float:
-    """Return the angle of a tooth of ``mate`` in its body's frame (place along a rack), from that of the other."""
+    """Return the angle of a tooth of ``mate`` in its frame (along a rack its place) from the other's."""
     if isinstance(mate, Rack) and isinstance(gear, Wheel):
         along, turn = mate.sees(gear, layout)
         return along + gear.radius * ((gear.phase or 0.0) + turn + math.pi / 2) + math.pi * gear.module / 2
@@ -315,18 +312,9 @@ def extent_of_rack(joint: Joint, solution: Solution) -> Extent:
 @kind(BELTS)
 @kind(RACKS)
 @kind(GEARS)
-def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """Gather all wheels, racks and pulleys of the mechanism, in phase, when the first of these kinds is asked for."""
-    return _gathered(m, layout)
-
-
 @force_kind(PLAYING)
-def gather_playing(m: Mechanism, forces: list[Force], layout: Layout) -> list[Feature]:
-    """Gather wheels if gears with play are the first kind."""
-    return _gathered(m, layout)
-
-
-def _gathered(m: Mechanism, layout: Layout) -> list[Feature]:
+def gather(m: Mechanism, things: Sequence[Joint | Force], layout: Layout) -> list[Feature]:
+    """Return all wheels, racks and pulleys of the mechanism, in phase, at the first of these kinds."""
     if any(layout.wheels.values()):
         return []
     known: list[Wheel] = []
@@ -368,7 +356,7 @@ def _toothed(m: Mechanism, layout: Layout) -> list[Joint | Force]:
 
 
 def _apart(known: list[Wheel], wheel: Wheel, mate: Wheel, tip: float, layout: Layout) -> Wheel:
-    """Return the wheel, or an equal one in another layer where the mate would meet one that the wheel has already."""
+    """Return the wheel, or an equal one in another layer where mates of the wheel would meet."""
     if wheel.ring or mate.ring or wheel.radius < wheels.LEAST_ON_TUBE:
         return wheel
     for candidate in known:
@@ -385,7 +373,7 @@ def _apart(known: list[Wheel], wheel: Wheel, mate: Wheel, tip: float, layout: La
 
 
 def _meet(first: Wheel, second: Wheel, tip: float, layout: Layout) -> bool:
-    """Return True if two wheels whose teeth are ``tip`` (rmm) high above their pitch circles meet in the plane."""
+    """Return True if two wheels meet whose teeth are ``tip`` (rmm) high above their pitch circles."""
     away = layout.seen(second.body, (second.x, second.y), first.body) - (first.x, first.y)
     return bool(np.hypot(*away.T).min() < first.radius + second.radius + 2 * tip + layout.sizes.room)
 
@@ -406,7 +394,7 @@ def refuse_apart(m: Mechanism, joint: Joint | Force, first: Wheel, second: Wheel
 
 
 def wheel_at(known: list[Wheel], name: str, marker: Marker, radius: float, ring: bool, layout: Layout) -> Wheel:
-    """Return the wheel of that pitch radius (m) about a marker: one of ``known``, or a new one that joins them."""
+    """Return the wheel of that pitch radius (m) about a marker, of ``known`` or a new one that joins them."""
     (x, y), body, size = layout.place(marker), marker.body.name, layout.sizes.of_metres(radius)
     for wheel in known:
         same = wheel.body == body and math.hypot(wheel.x - x, wheel.y - y) < SAME and wheel.ring == ring

@@ -5,34 +5,28 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
 
+from mbsd import Mechanism, Solution
+from mbsd.model.body import Marker
+from mbsd.model.joint import Joint
 from mbsd.model.teeth import with_radii
-from mechanisms.stages.automatic.layout.items import Item, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import build
+from mechanisms.stages.automatic.layout.items import Heights, Item, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Plan, build
 from mechanisms.stages.automatic.layout.planar import Rounded
 from mechanisms.stages.automatic.layout.sizes import Extent, Sizes, extent
-from mechanisms.stages.automatic.wheels.wheels import Wheel, build_wheel, shape_of, with_hub
+from mechanisms.stages.automatic.wheels.wheels import TUBE, Wheel, build_wheel, shape_of, with_hub
 from shared.contract.geometry import BeltPath
 from shared.shapes.build import extruded, turned
 from shared.shapes.involute import wire
+from shared.shapes.link import Eye
 from shared.shapes.outline import circle
 from shared.shapes.solid import Hold, Solid, placed
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism, Solution
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-    from shared.shapes.link import Eye
-
 
 # Pulleys: wheels with a rim for a round belt, or for a chain where the joint has teeth; what the belt needs of room.
 #
@@ -45,6 +39,10 @@ BELT = 1.8
 """Radius of a round belt (rmm)."""
 RIM = 5.5
 """From the pitch circle in to where the rim begins."""
+TOOTH = 0.3
+"""Height of a sprocket's teeth above the pitch circle, in pitches, and depth of their spaces below it."""
+WALL = 0.3
+"""Least width of a disc outside a tube, or outside what turns about a pin (rmm)."""
 STAYS = 0.02
 """A strand is at rest in a body if the centres move by less in it (rmm)."""
 
@@ -68,7 +66,7 @@ class Pulley(Wheel):
     @property
     def tooth(self) -> float:
         """Height of a sprocket's teeth above the pitch circle, and depth of their spaces below it."""
-        return 0.3 * 2 * math.pi * self.radius / self.teeth if self.teeth else 0.0
+        return TOOTH * 2 * math.pi * self.radius / self.teeth if self.teeth else 0.0
 
     @property
     def lip(self) -> float:
@@ -118,11 +116,14 @@ SEAT = 5
 
 @shape_of.register(Pulley)
 def pulley_disc(pulley: Pulley, thickness: float, eyes: list[tuple[float, float, Eye]]) -> tuple[cq.Workplane, int]:
-    """Return the disc of a pulley from z = 0 up, with its eyes, and its number of through holes. One without windows
-    has small holes, so that one sees it turn.
+    """Return the disc of a pulley from z = 0 up, with its eyes, and its number of through holes.
+
+    One without windows has small holes, so that one sees it turn.
     """
     shape, holes = with_hub(extruded(circle(0, 0, pulley.root), thickness), pulley.root, thickness, eyes)
-    room = pulley.root - Sizes.hardware
+    tubes = [eye.radius for _, _, eye in eyes if eye.bore == 0]  # they would close holes that they stand on
+    inner = max([Sizes.hardware, *tubes])
+    room = pulley.root - inner
     if holes > 1 or 0.3 * room < LEAST_MARK or any(math.hypot(x, y) > 0.01 for x, y, _ in eyes):
         return shape, holes
     for k in range(MARKS):
@@ -164,8 +165,9 @@ def rim_of(pulley: Pulley, thickness: float, z: float, seat: float) -> Solid:
 
 
 def sprocket_outline(teeth: int, radius: float, tooth: float, phase: float) -> np.ndarray:
-    """Return (n, 2): round seats for rollers on the pitch circle, the first at the angle ``phase``, and teeth between
-    them.
+    """Return (n, 2) an outline: round seats for rollers on the pitch circle, and teeth between them.
+
+    The first seat is at the angle ``phase``.
     """
     seat, pitch = 0.95 * tooth, 2 * math.pi / teeth
     turn = np.linspace(-100.0, 100.0, SEAT) * math.pi / 180 + math.pi  # about the roller, inner half
@@ -184,10 +186,32 @@ BELTS = "belt"
 
 @extent(BELTS)
 def extent_of(joint: Joint, solution: Solution) -> Extent:
-    """Return both pulleys."""
-    sized = with_radii(joint.params)
+    """Return both pulleys; those of few teeth are larger, as their spaces leave less of the disc."""
+    sized, teeth = with_radii(joint.params), joint.params.get("teeth") or (0, 0)
     both = (joint.i, sized["radius_i"]), (joint.j, sized["radius_j"])
-    return Extent(both, tuple((radius, LEAST) for _, radius in both))
+    least = [
+        max(LEAST, _least_of_teeth(count, _may_be_on_tube(joint, marker, solution.mechanism))) if count else LEAST
+        for (marker, _), count in zip(both, teeth, strict=True)
+    ]
+    return Extent(both, tuple((radius, low) for (_, radius), low in zip(both, least, strict=True)))
+
+
+def _least_of_teeth(teeth: int, on_tube: bool) -> float:
+    """Return the least pitch radius (rmm) of a sprocket with that many teeth whose disc holds its tube, or its pin."""
+    root = (TUBE[1] if on_tube else Sizes.hardware) + WALL
+    return (root + RIM) / (1.0 - TOOTH * 2 * math.pi / teeth)
+
+
+def _may_be_on_tube(joint: Joint, marker: Marker, m: Mechanism) -> bool:
+    """Return True if its body has more than this pulley and what is on its axis: then it may lie in its own layer."""
+    body = marker.body
+    others = [other for other in (*m.joints.values(), *m.forces.values()) if other is not joint]
+    ends = [end for other in others for end in (other.i, other.j) if end.body is body]
+    wheels = any(
+        other.kind.pair != "pin" for other in m.joints.values() if other is not joint and body.name in other.bodies
+    )
+    aside = any((end.x, end.y) != (marker.x, marker.y) for end in (*ends, *m.traces.values()) if end.body is body)
+    return wheels or aside or body.length is not None
 
 
 def belts(m: Mechanism, layout: Layout) -> list[Belt]:
@@ -215,7 +239,10 @@ def _pulley(joint: Joint, end: int, layout: Layout) -> Pulley:
 
 
 def _fit(m: Mechanism, joint: Joint, pair: tuple[Pulley, Pulley], layout: Layout) -> None:
-    """Seats of both sprockets where the chain's rollers are at the start. Raises UserError where pulleys overlap."""
+    """Seats of both sprockets where the chain's rollers are at the start.
+
+    Raises UserError where pulleys overlap.
+    """
     places = [layout.seen(pulley.body, (pulley.x, pulley.y), "ground")[0] for pulley in pair]
     first, second = pair
     way = places[1] - places[0]

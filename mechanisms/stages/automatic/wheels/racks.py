@@ -5,29 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot, build
+from mbsd import Mechanism
+from mbsd.model.joint import Joint
+from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Reach
+from mechanisms.stages.automatic.layout.layout import Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Foot, Plan, build
 from mechanisms.stages.automatic.layout.planar import Rounded, disc
+from mechanisms.stages.automatic.wheels.wheels import Wheel
 from shared.shapes.build import extruded
 from shared.shapes.involute import DEDENDUM, rack_outline, wire
 from shared.shapes.outline import circle
 from shared.shapes.solid import placed
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
-
-if TYPE_CHECKING:
-    from mbsd import Mechanism
-    from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-    from mechanisms.stages.automatic.wheels.wheels import Wheel
-
 
 # Racks: a toothed bar in the layer of its pinions, screwed to its body's plate or on posts of the ground.
 #
@@ -86,7 +79,7 @@ class Rack(Feature):
 
     @property
     def teeth(self) -> tuple[int, int]:
-        """Numbers of the first and the last tooth, counted from the one at ``phase``: all that pinions come to."""
+        """Numbers of the first and last tooth that pinions come to, counted from the one at ``phase``."""
         beyond = max(math.sqrt(max(p.tip**2 - (p.radius - self.tip) ** 2, 0.0)) for p in self.mates) + self.pitch
         low, high = min(way[0] for way in self.ways) - beyond, max(way[1] for way in self.ways) + beyond
         phase = self.phase or 0.0
@@ -143,8 +136,9 @@ class Rack(Feature):
 
 
 def add_way(m: Mechanism, rack: Rack, pinion: Wheel, joint: Joint, layout: Layout) -> None:
-    """Add the pinion's way along the rack. Raises UserError if its centre is not always its radius above the pitch
-    line.
+    """Add the pinion's way along the rack.
+
+    Raises UserError if its centre is not always its radius above the pitch line.
     """
     path = _path(rack, pinion, layout)
     rack.ways.append((float(path[:, 0].min()), float(path[:, 0].max())))
@@ -190,10 +184,8 @@ def build_rack(rack: Rack, plan: Plan, heights: Heights) -> None:
     elif heights.bottom(rack.body) == z:
         plan.plate(rack.body, bar, (rack.x, rack.y, 0.0))
         return
-    elif heights.bottom(rack.body) < z:
-        low, high = heights.top(rack.body) + seat, z - seat
     else:
-        low, high = heights.top(rack.layer) + seat, heights.bottom(rack.body) - seat
+        low, high = heights.between(rack.body, rack.layer, seat, seat)
     plan.make(rack.body, f"rack_{rack.name}", placed(bar, z=z), "steel", 0)
     for k, (x, y) in enumerate(rack.seats(plan.layout)):
         stud = extruded(circle(x, y, STUD), high - low, low)

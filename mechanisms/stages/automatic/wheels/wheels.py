@@ -7,28 +7,22 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import singledispatch
 from itertools import pairwise
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import cadquery as cq
 import numpy as np
 
-from mechanisms.stages.automatic.layout.items import Anchor, Item, Reach
-from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot, build
+from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Reach
+from mechanisms.stages.automatic.layout.layout import Carrier, Feature, Layout
+from mechanisms.stages.automatic.layout.plan import Foot, Plan, build
 from mechanisms.stages.automatic.layout.planar import Rounded, disc, least_gap
 from mechanisms.stages.automatic.pins.free_bodies import Face
-from mechanisms.stages.automatic.pins.pins import SAME, Pin
+from mechanisms.stages.automatic.pins.pins import pins_at
 from shared.shapes.build import extruded, turned
 from shared.shapes.involute import DEDENDUM, toothed, wire
 from shared.shapes.link import Eye
 from shared.shapes.outline import circle
 from shared.shapes.solid import placed
-
-if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.items import Heights
-    from mechanisms.stages.automatic.layout.layout import Carrier, Layout
-    from mechanisms.stages.automatic.layout.plan import Plan
-
 
 # A wheel: its teeth in numbers, its layer, what room it takes. External wheels, and rings with teeth inside.
 #
@@ -115,7 +109,8 @@ class Wheel(Feature):
         meshes = frozenset(mate.what for mate in self.mates)
         if not self.ring:
             on_tube = self.body != "ground" and not self.shares
-            meshes = meshes | self._pins(layout) if on_tube else meshes
+            if on_tube:  # it goes round the pins there
+                meshes |= {pin.what for pin in pins_at(layout, self.body, (self.x, self.y))}
             teeth = disc(self.x, self.y, self.tip)
             yield Item(self.what, self.body, teeth, reach, spares, self, meshes, spared=not on_tube)
             if self.body == "ground":
@@ -147,15 +142,8 @@ class Wheel(Feature):
         in_ring = any(isinstance(mate, Wheel) and mate.ring for mate in self.mates)  # an arm would meet its teeth
         return None if fills else Face(self.x, self.y, self.root, math.inf if in_ring else max(self.tip, self.radius))
 
-    def _pins(self, layout: Layout) -> frozenset[str]:
-        """Return names of the pins that its tube goes round."""
-        pins = (pin for pin in layout.features if isinstance(pin, Pin) and self.body in pin.places)
-        return frozenset(pin.what for pin in pins if math.dist(pin.places[self.body], (self.x, self.y)) < SAME)
-
     def posts(self, layout: Layout) -> list[tuple[float, float]]:
-        """Return posts under the rim of a ring fixed to ground: a cross turned so that the fewest bodies come near
-        it.
-        """
+        """Return posts under the rim of a ring fixed to ground: a cross that the fewest bodies come near."""
         return min((self._cross(degrees) for degrees in CROSSES), key=lambda cross: _near(cross, layout))
 
     def _cross(self, degrees: float) -> list[tuple[float, float]]:
@@ -207,9 +195,7 @@ def _on_ground(wheel: Wheel, plan: Plan, heights: Heights) -> None:
     shape, holes = shape_of(wheel, thickness, [])
     if not wheel.ring:
         pivot, here = plan.layout.sizes.pivot, (wheel.x, wheel.y)
-        grounded = [pin for pin in plan.layout.features if isinstance(pin, Pin) and pin.on_ground]
-        pinned = any(math.dist(pin.places["ground"], here) < SAME for pin in grounded)
-        bore = pivot.held if pinned else pivot.bushing + 1.0
+        bore = pivot.held if pins_at(plan.layout, "ground", here) else pivot.bushing + 1.0
         shape = shape.cut(extruded(circle(0, 0, bore / 2), thickness + 2, -1.0))
         post = extruded(circle(0, 0, wheel.root - 1.5), z - 2 * seat, seat, [circle(0, 0, bore / 2)])
         plan.make("ground", f"post_{wheel.name}", placed(post, wheel.x, wheel.y), "aluminium", 1)
@@ -227,7 +213,7 @@ def _on_tube(wheel: Wheel, plan: Plan, heights: Heights) -> None:
     inner, outer = TUBE
     thickness = heights.thickness
     shape, windows = shape_of(wheel, thickness, [(0.0, 0.0, Eye(outer, 0.0))])
-    low, high = _to_plate(wheel, plan, heights)
+    low, high = heights.between(wheel.body, wheel.layer, plan.layout.sizes.pivot.fit.seat, 0.0)
     z = heights.bottom(wheel.layer)
     if high > low:
         tube = extruded(circle(0, 0, outer), high - low + 1.0, low - z - (1.0 if low > z else 0.0))
@@ -240,7 +226,7 @@ def _cup(wheel: Wheel, plan: Plan, heights: Heights) -> None:
     """A ring that turns: rim and wall are a piece, the bottom is the body's plate."""
     thickness = heights.thickness
     shape, holes = shape_of(wheel, thickness, [])
-    low, high = _to_plate(wheel, plan, heights)
+    low, high = heights.between(wheel.body, wheel.layer, plan.layout.sizes.pivot.fit.seat, 0.0)
     z = heights.bottom(wheel.layer)
     if high > low:
         wall = extruded(circle(0, 0, wheel.outside), high - low, low - z, [circle(0, 0, wheel.root)])
@@ -266,14 +252,6 @@ def _cup(wheel: Wheel, plan: Plan, heights: Heights) -> None:
         ]
 
 
-def _to_plate(wheel: Wheel, plan: Plan, heights: Heights) -> tuple[float, float]:
-    """Return the range in which something between the wheel and its body's plate reaches."""
-    seat = plan.layout.sizes.pivot.fit.seat
-    if heights.bottom(wheel.body) < heights.bottom(wheel.layer):
-        return heights.top(wheel.body) + seat, heights.bottom(wheel.layer)
-    return heights.top(wheel.layer), heights.bottom(wheel.body) - seat
-
-
 @singledispatch
 def shape_of(wheel: Carrier, thickness: float, eyes: list[tuple[float, float, Eye]]) -> tuple[cq.Workplane, int]:
     """Return a wheel about the z axis from z = 0 up, with its eyes, and its number of through holes."""
@@ -295,7 +273,10 @@ def wheel_shape(wheel: Wheel, thickness: float, eyes: list[tuple[float, float, E
 def with_hub(
     shape: cq.Workplane, root: float, thickness: float, eyes: list[tuple[float, float, Eye]]
 ) -> tuple[cq.Workplane, int]:
-    """Return a disc of that root radius with a milled-out web and its eyes, and its number of through holes."""
+    """Return a disc with a milled-out web and its eyes, and its number of through holes.
+
+    ``root`` is its radius.
+    """
     alone = all(math.hypot(x, y) < 0.01 for x, y, _ in eyes)
     holes = 0
     if alone and root - RIM_WALL > HUB + 5.0:

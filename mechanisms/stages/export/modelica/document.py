@@ -137,7 +137,7 @@ CLASSES = {
     frame_a.fy + frame_b.fy = 0;""",
     ),
 }
-"""By name: what it is, its declarations, its equations."""
+"""Blocks by name: the kind, its declarations, its equations."""
 
 
 def text_of(name: str) -> str:

@@ -176,7 +176,10 @@ class Function:
 
 
 def coordinates(joints: Sequence[Any], loose: Sequence[str], size: float) -> dict[Key, Function]:
-    """Return coordinates of joints, and of bodies that no joint with a coordinate holds; free of dimension."""
+    """Return coordinates of joints, and of bodies that no joint with a coordinate holds.
+
+    Free of dimension.
+    """
     out: dict[Key, Function] = {}
     for joint in joints:
         if joint.kind.name in ("revolute", "pin_in_slot"):

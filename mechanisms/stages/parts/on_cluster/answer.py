@@ -53,7 +53,7 @@ class WorkerParts(msgspec.Struct, forbid_unknown_fields=True):
     notes: dict[str, Any] = {}
     """The fields of :class:`Notes`."""
     refusal: str = ""
-    """Why the stage made none."""
+    """Reason why the stage built none."""
 
 
 def read(name: str, content: bytes, own_file: str, program: Mapping[str, str]) -> WorkerParts:
@@ -130,7 +130,7 @@ def _refuse_other_notes(name: str, fields: Mapping[str, Any], own_file: str) -> 
 
 
 def _refuse_other_solids(name: str, made: WorkerParts) -> None:
-    """Have a process read all meshes and solids, so that one on which the CAD kernel crashes ends nothing else."""
+    """Have a process read all meshes and solids: if the CAD kernel crashes, nothing else ends."""
     with tempfile.TemporaryDirectory(prefix="mbsd-parts-") as folder:
         (Path(folder) / "parts.json").write_bytes(made.document)
         for file, content in made.files.items():

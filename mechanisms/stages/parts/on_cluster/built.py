@@ -1,4 +1,4 @@
-"""Parts on a worker of a cluster: the same stage in a copy of the program with the author's files in it.
+"""Parts on a worker of a cluster: the same stage in a copy of the program with the author's files.
 
 The stage is a process of its own, so neither the author's code nor the CAD kernel can hurt the worker, and nothing of
 one mechanism is left for the next.
@@ -158,7 +158,7 @@ class Order(msgspec.Struct, frozen=True, kw_only=True):
 
     name: str
     files: dict[str, str]
-    """By name as inputs have it, the hash of the content of each of the authors' files."""
+    """Hashes of the content of the authors' files, by name as inputs have it."""
     program: dict[str, str]
     """Versions and sources of who asks, as ``identity`` gives them."""
     folder: str = ""
@@ -170,10 +170,10 @@ class Order(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def collected(name: str, read: Iterable[str] = ()) -> dict[str, bytes]:
-    """Return the files of authors, by the name that inputs have, that go along for the mechanism or variant ``name``.
+    """Return the authors' files, by the name that inputs have, for the mechanism or variant ``name``.
 
-    ``read`` are names of files of a user's own folder that the parts were made from before. One that cannot be read,
-    or goes meanwhile, stays here; that it is missing is reported from here.
+    The names are those that inputs have. ``read`` are names of files of a user's own folder that the parts were made
+    from before. One that cannot be read, or goes meanwhile, stays here; that it is missing is reported from here.
     """
     contents: dict[str, bytes] = {}
     owner = paths.owner_of(name)
@@ -215,7 +215,7 @@ def _is_hidden(path: Path) -> bool:
 
 
 def _imported(waiting: list[tuple[Path, str]]) -> Iterator[Path]:
-    """Return these files, each with its package, and those of the user's folder that their import statements name."""
+    """Yield these files, each with its package, and those of the user's folder that they import."""
     seen: set[Path] = set()
     while waiting:
         file, package = waiting.pop()

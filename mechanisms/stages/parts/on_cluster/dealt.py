@@ -1,4 +1,7 @@
-"""The parts of a mechanism, asked of the cluster's workers. What none of them can answer is left to this machine."""
+"""The parts of a mechanism, asked of the cluster's workers.
+
+What none of them can answer is left to this machine.
+"""
 
 from __future__ import annotations
 
@@ -27,12 +30,13 @@ GRACE = 120.0
 
 
 def made_elsewhere(name: str, scale: Scale | None, machine: bytes, before: Iterable[str]) -> WorkerParts | None:
-    """Return the parts of ``name`` as a worker made them; None where the stage there refused, which is reported from
-    here.
+    """Return the parts of ``name`` as a worker made them.
 
-    ``machine`` is the parts.json of the machine itself, where its model at ``scale`` needs it; ``before`` are names of
-    files from which the parts were made before. Raises UserError if no scheduler answers, no worker is fit, or several
-    workers fail.
+    None where the stage there refused, which is reported from here.
+
+    The rejection is reported from here. ``machine`` is the parts.json of the machine itself, where its model at
+    ``scale`` needs it; ``before`` are names of files from which the parts were made before. Raises UserError if no
+    scheduler answers, no worker is fit, or several workers fail.
     """
     files = collected(name, before)
     contents = by_content({**files, "": machine} if machine else files)

@@ -1,7 +1,8 @@
-"""``python -m mechanisms.stages.parts.on_cluster.solids_check FOLDER``: reads solids that another machine has made.
+"""``python -m mechanisms.stages.parts.on_cluster.solids_check FOLDER``: reads solids from elsewhere.
 
-It ends with code 1 and a sentence on stderr unless every mesh and every STEP file beside parts.json is whole, is the
-same closed solid, and has the mass that parts.json states.
+``python -m mechanisms.stages.parts.on_cluster.solids_check FOLDER`` reads them. It ends with code 1 and a sentence on
+stderr unless every mesh and every STEP file beside parts.json is whole, is the same closed solid, and has the mass that
+parts.json states.
 """
 
 from __future__ import annotations

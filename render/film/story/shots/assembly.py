@@ -21,7 +21,7 @@ from shared.contract.quantity import written
 MOST_LEADERS = 8
 """Bodies that are named: of more, the heaviest."""
 ROW = 0.085
-"""From one name to the next at least, in the picture's shorter side."""
+"""Least distance from one name to the next, in the picture's shorter side."""
 
 
 def leaders(scenery: Scenery, camera: CameraPose) -> tuple[Leader, ...]:
@@ -58,7 +58,10 @@ def _named(scenery: Scenery) -> list[tuple[str, float]]:
 
 
 def _side(places: list[tuple[float, float, str, str]], right: bool, row: float, top: float, low: float) -> list[Leader]:
-    """Return names at one side, from above in the order of their places, so that no two lines cross; ``row`` apart."""
+    """Return names at one side, ``row`` apart, in the order of their places.
+
+    They go down from above, so that no two lines cross.
+    """
     places = sorted(places, key=lambda place: place[1])
     heights = [min(max(y, top), low) for _, y, _, _ in places]
     for k in range(1, len(heights)):

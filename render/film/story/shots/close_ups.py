@@ -28,7 +28,7 @@ LENS, WIDE = 90.0, 0.36
 SLOWER = 0.4
 """The rate beside that of the loop."""
 FOLLOWED = 0.85
-"""How much of the joint's way the camera goes."""
+"""Part of the joint's way that the camera goes."""
 LYING, STANDING = ((-34.0, 34.0), (14.0, 44.0)), ((-40.0, 16.0), (6.0, 26.0))
 """Azimuth and elevation (degrees) at the start and at the end of the move."""
 
@@ -101,7 +101,7 @@ def _height(scenery: Scenery, name: str) -> float:
 
 
 def _place(scenery: Scenery, name: str, at: float) -> tuple[float, float, float]:
-    """Return where the joint is at a frame of the loop, for a camera that does not follow all of its way (m, world)."""
+    """Return where the joint is (m, world) at a frame, for a camera that does not follow all of its way."""
     moment = scenery.film.clock.moment(at)
     x, y = scenery.film.poses.joint(name, Moment(moment.time, 0))
     joint = scenery.film.motion.joints[name]
@@ -149,8 +149,9 @@ left is seen the other way round."""
 
 
 def section(scenery: Scenery) -> Shot | None:
-    """Return the section; None for a shot that cuts nothing open. Raises UserError where it is asked for all the
-    same.
+    """Return the section; None for a shot that cuts nothing open.
+
+    Raises UserError if the shot asks for it all the same.
     """
     if scenery.cut is None:
         if "section" in (scenery.wishes.shots or ()):

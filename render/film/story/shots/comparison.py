@@ -34,9 +34,9 @@ class Difference:
 def differences(
     first: Sequence[Curve], second: Sequence[Curve], spans: tuple[float, float], repeats: tuple[bool, bool]
 ) -> list[Difference]:
-    """Return differences of curves that both variants have, the largest difference as a part of the larger curve first.
+    """Return differences of curves that both variants have, the largest first.
 
-    Where the shorter motion has no period it stands at its end.
+    It counts as a part of the larger curve. Where the shorter motion has no period it stands at its end.
     """
     times = np.linspace(0.0, max(spans), ROWS)
     out = []
@@ -56,7 +56,7 @@ def differences(
 
 
 def ramp_of(rate: float, span: float, at: float | None) -> Ramp:
-    """Return a ramp from 0 over all of a ``span`` (s) at about a ``rate``, with a stop ``at`` a time of it."""
+    """Return a ramp from 0 over all of a ``span`` (s) at about a ``rate``, with a stop ``at`` a time."""
     seconds = min(max(span / rate, SHORT), SECONDS)
     rate = span / seconds
     if at is None:
@@ -73,7 +73,10 @@ def ramp_of(rate: float, span: float, at: float | None) -> Ramp:
 
 
 def comparison_shot(scenery: Scenery, ramp: Ramp, differs: Difference | None, names: tuple[str, str]) -> Shot:
-    """Return the shot of one of them; both have the same ``ramp``, whose times count from the start of each."""
+    """Return the shot of one of the variants.
+
+    Both have the same ``ramp``, whose times count from the start of each.
+    """
     stand, start = scenery.stand(), scenery.film.clock.start
     seconds, text, shown = ramp.seconds, "", (0.0, 0.0)
     if differs is not None:

@@ -37,7 +37,7 @@ REST = 0.7
 
 
 def motion(scenery: Scenery) -> Shot:
-    """Return the whole turns at the rate of the loop film; a longer motion once, fast through what is dull."""
+    """Return whole turns at the rate of the loop film; a longer motion once, fast where it is dull."""
     clock = scenery.film.clock
     whole = clock.moving / scenery.fps
     showings = max(1, int(np.ceil(SHORT / (whole if clock.repeats else whole + REST) - 1e-9)))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from typing import TYPE_CHECKING
 
 from mechanisms.stages.automatic.automatic import Automatic
@@ -10,22 +9,8 @@ from tools.hunt_parts import case
 from tools.models import shaft_machines as models
 
 if TYPE_CHECKING:
-    from cadquery import BoundBox
-
     from mbsd import Mechanism
     from shared.shapes.bodies import Bodies
-    from shared.shapes.solid import Solid
-
-
-def model(of: str) -> Mechanism:
-    """A model of tools/models/shaft_machines.py by its name there."""
-    return models.legs() if of == "LEGS" else models.engine(getattr(models, of))
-
-
-@cache
-def proven(of: str) -> tuple[Automatic, Bodies]:
-    """The plan and the solids of a model, once, after :func:`checked`."""
-    return checked(model(of))
 
 
 def checked(m: Mechanism) -> tuple[Automatic, Bodies]:
@@ -39,14 +24,7 @@ def checked(m: Mechanism) -> tuple[Automatic, Bodies]:
     return made, bodies
 
 
-def box(solid: Solid) -> BoundBox:
-    """Of the mesh of a solid: that of its curved faces is wider."""
-    shape = solid.shape.val()
-    shape.mesh(0.05)
-    return shape.BoundingBox()
-
-
 def plan(of: str) -> Automatic:
-    """The plan of a model, without solids."""
-    m = model(of)
+    """Return the plan of an engine of tools/models/shaft_machines.py by its name there, without solids."""
+    m = models.engine(getattr(models, of))
     return Automatic(m, m.sweep(steps=90))

@@ -17,7 +17,7 @@ from mbsd.machines.engines.valve_train import ValveTrain
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.shafts.along import Along
 from shared.stage.errors import UserError
-from tests.mechanisms.automatic.shafts.proofs import checked, proven
+from tests.mechanisms.automatic.shafts.proofs import checked
 from tools.models import shaft_machines
 from tools.models.shaft_machines import SINGLE, engine, legs, press
 
@@ -83,7 +83,7 @@ def refusal(m: Mechanism) -> str:
 
 @pytest.mark.slow
 def test_three_legs_on_a_shaft_are_built_and_nothing_touches() -> None:
-    _, bodies = proven("LEGS")
+    _, bodies = checked(legs())
     on_ground = [solid.name for solid in bodies["ground"]]
     assert on_ground.count("pin_hip_1") == 1, "one axle for all rockers"
     assert not [name for name in on_ground if name.startswith("liner")]
@@ -314,7 +314,7 @@ def test_machines_with_a_shaft_are_built_and_nothing_touches(name: str, moved: s
 
 @pytest.mark.slow
 def test_a_pair_of_legs_is_built_and_nothing_touches() -> None:
-    """Those of all six pairs are alike; each pair more takes its 30 s."""
+    """All six pairs are alike; each further pair takes its 30 s."""
     _, bodies = checked(shaft_machines.walker(1))
     assert len(bodies) == 2 + 12, "ground, crank, and two legs of six links"
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 import psutil
 import pytest
 
 from studio.live.processes.trees import MARK
+from tests.running.processes import until
 from tests.studio.live.arm import ARM
 from tests.studio.live.served import WAIT, processes_of
 
@@ -32,13 +31,6 @@ if os.fork() == 0:
 LOOPS = BEGINS + '(HERE / "making").touch()\nwhile True:\n    pass\n'
 
 
-def until(there: Callable[[], bool], what: str) -> None:
-    ends = time.monotonic() + WAIT
-    while not there():
-        assert time.monotonic() < ends, what
-        time.sleep(0.05)
-
-
 @pytest.mark.skipif(sys.platform != "linux", reason="reads the environment of other processes in /proc")
 def test_nothing_outlives_a_server_that_was_killed(tmp_path: Path) -> None:
     """Servers that end in order are checked by each test that has one (served.py)."""
@@ -50,7 +42,7 @@ def test_nothing_outlives_a_server_that_was_killed(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "tests.studio.live.serving", "arm"]
     with subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, start_new_session=True) as server:
         try:
-            until((folder / "arm" / "making").exists, "parts are being made")
+            until((folder / "arm" / "making").exists, WAIT)
             warm = next(
                 child for child in psutil.Process(server.pid).children() if "forking" in " ".join(child.cmdline())
             )
@@ -58,6 +50,6 @@ def test_nothing_outlives_a_server_that_was_killed(tmp_path: Path) -> None:
             assert len(processes_of(mark)) >= 9, "the warm process, two keepers, what they keep and what that has begun"
             server.kill()
             server.wait(WAIT)
-            until(lambda: not processes_of(mark), "all of them have ended")
+            until(lambda: not processes_of(mark), WAIT)
         finally:
             server.kill()

@@ -56,7 +56,7 @@ NAMES = ("a", "b", "d[0]", "d[1][0]", "d[1][1]", "e", "f", "g", "i")
     coding=st.sampled_from(["utf-8", "latin-1", "bom"]),
     newline=st.sampled_from(["\n", "\r\n", "\r"]),
 )
-def test_what_is_written_is_read_and_the_rest_is_as_it_was(values: dict, whole: int, coding: str, newline: str) -> None:
+def test_written_values_are_read_and_the_rest_stays(values: dict, whole: int, coding: str, newline: str) -> None:
     text = SOURCE.format(coding="utf-8" if coding == "bom" else coding)
     if coding == "latin-1":
         text = text.replace("μ → 3", "").replace("—", "")

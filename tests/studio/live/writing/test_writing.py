@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -10,7 +9,7 @@ import pytest
 from studio.live import writing
 from studio.live.writing import replace
 from tests.studio.live.arm import ARM
-from tests.studio.live.served import Page, Served, served
+from tests.studio.live.served import Page, Served, live_server
 
 FIELDS = "    length: float = 0.2  # of the crank\n    speed: float = tau\n"
 DECIDES = {
@@ -27,12 +26,7 @@ DECIDES = {
 """Fields of Params, and what stands after the class."""
 
 
-@pytest.fixture(scope="module")
-def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    with served(tmp_path_factory.mktemp("written") / "mechanisms", "arm", ARM, 30.0) as server:
-        with server.page() as page:
-            page.hear("motion", "state", wanted=lambda header: bool(header["payload"]))
-        yield server
+live = live_server("written")
 
 
 def file_of(live: Served) -> Path:
@@ -71,7 +65,7 @@ def test_a_later_line_that_decides_a_number_is_named(live: Served, kind: str) ->
     assert live.session.history.now == {"length": 0.25}
 
 
-def test_what_is_computed_from_it_and_what_was_computed_is_told(live: Served) -> None:
+def test_values_computed_from_it_and_computed_values_are_named(live: Served) -> None:
     source = ARM.replace(FIELDS, FIELDS + "    twice: float = 2 * length\n")
     with live.page() as page:
         solved(live, page, source)

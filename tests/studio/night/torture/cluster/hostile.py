@@ -27,10 +27,10 @@ def _picture(width: int, height: int) -> bytes:
 
 
 def _sent(keys: Sequence[str], content: bytes, name: str = "") -> bytes:
-    def made(key: str) -> bytes:
+    def piece(key: str) -> bytes:
         return msgspec.msgpack.encode(Made(name or name_of(key, content), content, 0.1, "CPU"))
 
-    return encoded(Report(done=[(key, made(key)) for key in keys], seconds=0.1))
+    return encoded(Report(done=[(key, piece(key)) for key in keys], seconds=0.1))
 
 
 KINDS: dict[str, Callable[[Sequence[str]], Any]] = {

@@ -34,6 +34,8 @@ RICHER = 4
 """Samples of a plate, in those of a frame."""
 FEWER, FEWEST = 4, 2
 """Samples of a frame in those of its small picture, which has at least so many."""
+RAYS = ("visible_camera", "visible_diffuse", "visible_glossy", "visible_transmission", "visible_shadow")
+"""All kinds that a studio without mist has."""
 LAUNCH = 20_000.0
 """Samples that take as long as the start of a render."""
 WORTH = 0.7
@@ -163,7 +165,10 @@ class Plates:
 
     @contextmanager
     def _without_movers(self, plate: Plate) -> Iterator[None]:
-        """Hide what moves while the camera stands."""
+        """Let no ray see what moves while the camera stands.
+
+        It stays in the scene: Cycles would sort the lamps anew if it went, and noise of plate and frame would differ.
+        """
         built = self.built
         carriers = [built.bodies[name] for name in plate.moving if name in built.bodies]
         things = [thing for carrier in carriers for thing in carrier.children_recursive]
@@ -171,14 +176,14 @@ class Plates:
         things += [built.trails[which] for which in plate.trails]
         things += [built.tubes[which] for which in plate.tubes]
         things += [built.texts[which] for which in plate.labels]
-        before = [thing.hide_render for thing in things]
-        for thing in things:
-            thing.hide_render = True
+        before = [(thing, rays, getattr(thing, rays)) for thing in things for rays in RAYS]
+        for thing, rays, _ in before:
+            setattr(thing, rays, False)
         try:
             yield
         finally:
-            for thing, hidden in zip(things, before, strict=True):
-                thing.hide_render = hidden
+            for thing, rays, seen in before:
+                setattr(thing, rays, seen)
 
     # The frame.
 

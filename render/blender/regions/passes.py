@@ -23,6 +23,8 @@ class Small:
     """A small picture with what its pixels see first: arrays (h, w, 3), and (h, w) of the depth."""
 
     light: Array
+    noisy: Array
+    """The light before it was denoised."""
     depth: Array
     albedo: Array
     normal: Array
@@ -36,10 +38,12 @@ def read_light(content: bytes) -> Array:
 
 
 def read_small(content: bytes) -> Small:
-    """Return a picture with the guides that ``denoising_store_passes`` adds."""
+    """Return a picture with the guides that ``denoising_store_passes`` adds, with or without a denoiser."""
     passes = read_passes(content)
+    noisy = "Noisy Image" if "Noisy Image.R" in passes else "Combined"
     return Small(
         light=_rgb(passes, "Combined", "RGB"),
+        noisy=_rgb(passes, noisy, "RGB"),
         depth=passes["Denoising Depth.Z"].astype(np.float32),
         albedo=_rgb(passes, "Denoising Albedo", "RGB"),
         normal=_rgb(passes, "Denoising Normal", "XYZ"),

@@ -32,7 +32,7 @@ from shared.stage.files import refusal, write_bytes
 Array = np.ndarray
 RICHER = 4
 """Samples of a plate, in those of a frame."""
-FEWER, FEWEST = 4, 2
+FEWER, FEWEST = 4, 4
 """Samples of a frame in those of its small picture, which has at least so many."""
 RAYS = ("visible_camera", "visible_diffuse", "visible_glossy", "visible_transmission", "visible_shadow")
 """All kinds that a studio without mist has."""
@@ -160,7 +160,7 @@ class Plates:
         if plate.key not in self._small:
             self.built.show(plate.state)
             with self._without_movers(plate):
-                self._small[plate.key] = self._small_picture()
+                self._small[plate.key] = self._small_picture(clean=True)
         return self._small[plate.key]
 
     @contextmanager
@@ -229,9 +229,15 @@ class Plates:
 
     # Renders.
 
-    def _small_picture(self) -> Small:
-        samples = max(FEWEST, self.job.samples // FEWER)
-        return read_small(self._content(samples, size=self._times, guides=True))
+    def _small_picture(self, clean: bool = False) -> Small:
+        """Return the small picture of the scene as it stands; a plate's is denoised as well."""
+        cycles = self.built.scene.cycles
+        cycles.use_denoising = clean
+        try:
+            samples = max(FEWEST, self.job.samples // FEWER)
+            return read_small(self._content(samples, size=self._times, guides=True))
+        finally:
+            cycles.use_denoising = True
 
     def _whole(self, samples: int) -> Array:
         return self._rendered(samples)

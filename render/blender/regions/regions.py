@@ -1,17 +1,19 @@
 """Regions of a picture: where a frame differs from the plate, the rectangles that cover them, and their joints.
 
 A plate P shows what stands, in many samples. A frame F is known from a small picture f of few samples, beside the same
-small picture p of the plate. Both have the same seed: they are equal wherever no path of light meets what moves.
+small picture p of the plate. Both have the same seed: they are equal wherever no path of light meets what moves. So
+their difference has little noise, as long as no denoiser has treated each in its own way.
 
-    s = smooth(log(f + e) - log(p + e))     the light that what moves takes or gives, where itself is not seen
-    F = P exp(s)                            on the ground and the wall: soft shadows, light that bounces
-    region                                  what moves, and where p exp(s) is not f: sharp shadows, reflections
+    s = smooth((f - p) / p)     the light that what moves takes or gives, where itself is not seen
+    F = P (1 + s)               on the ground and the wall: soft shadows, light that bounces
+    region                      what moves, and where p (1 + s) is not f: sharp shadows, reflections
 
 Regions are rendered as any picture; the rest is the plate's, without its noise.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,11 +28,14 @@ DARKEST = -6.0
 STOPS = 10.5
 """From there to white."""
 LEAST = 1e-3
-"""Light that is added before logarithms are taken: in the dark, ratios are noise."""
-SMOOTH = 2.0
+"""Light that is added to what divides: in the dark, ratios are noise."""
+DARKENED = -0.95
+"""Light that what moves may take, at most, in parts of what there was."""
+SMOOTH = 1.5
 """Pixels of the small picture over which the light of what moves is smooth (the deviation of a Gaussian)."""
-DIFFERENT = 3.0
-"""Parts of 255 by which a small picture may differ from the plate in its light, in means of 3 x 3 pixels."""
+DIFFERENT, NEAR = 2.0, 5
+"""Parts of 255 by which a frame may differ from the plate in its light, and the pixels of the small picture, square,
+over which means are taken."""
 MIRRORS = 0.1
 """Part of the light that a surface mirrors above which it is rendered wherever its light changes: metal."""
 CLOSED = 2
@@ -50,19 +55,19 @@ class Change:
     region: Array
     """(h, w) True where the frame is rendered."""
     light: Array
-    """(h, w, 3): logarithm of the light elsewhere, in parts of the plate's."""
+    """(h, w, 3): the light that is more or less than the plate's elsewhere, in parts of it."""
 
 
 def change_of(frame: Small, plate: Small) -> Change:
     """Return where a frame has to be rendered, and how its light differs from that of the plate elsewhere."""
     body = ndimage.binary_dilation(_sees_another(frame, plate))
-    ratio = np.log((frame.light + LEAST) / (plate.light + LEAST))
-    beside = ndimage.binary_dilation(body, iterations=MARGIN)  # the denoiser spreads a body's light over its neighbours
-    weight = (~beside).astype(np.float32)[..., None]
-    light = _smooth(ratio * weight) / np.maximum(_smooth(weight), 1e-3)
+    weight = (~body).astype(np.float32)[..., None]
+    more = weight * (frame.noisy - plate.noisy) / (plate.light + LEAST)
+    light = _mean(more, weight, _smooth)
     mirrors = plate.mirrored.max(axis=-1, keepdims=True) > MIRRORS
-    expected = plate.light * np.exp(np.where(mirrors, 0.0, light))
-    off = ndimage.uniform_filter(np.abs(seen(expected) - seen(frame.light)).max(axis=-1), 3)
+    expected = plate.light * (1 + np.where(mirrors, 0.0, light))
+    there = plate.light * (1 + _mean(more, weight, _near))
+    off = np.abs(seen(expected) - seen(there)).max(axis=-1)
     region = _without_specks(ndimage.binary_closing(body | (off > DIFFERENT), iterations=CLOSED))
     return Change(ndimage.binary_dilation(region, iterations=MARGIN), light)
 
@@ -80,8 +85,17 @@ def _sees_another(frame: Small, plate: Small) -> Array:
     return depth | albedo | (np.abs(frame.normal - plate.normal).max(axis=-1) > TURNED)
 
 
+def _mean(more: Array, weight: Array, blurred: Callable[[Array], Array]) -> Array:
+    """Return the mean light that is more than the plate's around each pixel, of pixels that have a weight."""
+    return np.maximum(blurred(more) / np.maximum(blurred(weight), 1e-3), DARKENED)
+
+
 def _smooth(values: Array) -> Array:
     return ndimage.gaussian_filter(values, (SMOOTH, SMOOTH, 0))
+
+
+def _near(values: Array) -> Array:
+    return ndimage.uniform_filter(values, (NEAR, NEAR, 1))
 
 
 def _without_specks(mask: Array) -> Array:
@@ -172,7 +186,7 @@ def joined(plate: Array, change: Change, rects: list[Rect], rendered: list[Array
     ``rendered`` are pictures of the ``rects`` at the size of the plate.
     """
     times = plate.shape[0] // change.region.shape[0]
-    picture = plate * np.exp(enlarged(change.light, times))
+    picture = plate * (1 + enlarged(change.light, times))
     share = _share(change.region, times)[..., None]
     for rect, patch in zip(rects, rendered, strict=True):
         top, bottom, left, right = (times * edge for edge in rect)

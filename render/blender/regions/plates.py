@@ -36,11 +36,11 @@ FEWER, FEWEST = 4, 4
 """Samples of a frame in those of its small picture, which has at least so many."""
 RAYS = ("visible_camera", "visible_diffuse", "visible_glossy", "visible_transmission", "visible_shadow")
 """All kinds that a studio without mist has."""
-LAUNCH = 20_000.0
+LAUNCH = 30_000.0
 """Samples that take as long as the start of a render."""
-WORTH = 0.7
+WORTH = 0.8
 """Cost of a frame's regions, in parts of the whole frame, above which the film is rendered in whole frames."""
-WHOLE = 0.9
+WHOLE = 1.0
 """The same for one frame among others: it is rendered whole and joined with the plate as others are."""
 
 
@@ -80,6 +80,10 @@ class Plates:
         """``render`` renders a scene and returns the seconds, ``tell`` says what is done, as a word after Blender."""
         self.built, self.job, self._render, self._tell = built, built.job, render, tell
         self.folder = Path(self.job.plates_folder)
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise UserError(refusal(self.folder, error)) from error
         self.card = stencil.build_stencil(built.scene, built.scene.camera)
         self._kept: dict[str, Kept] = {}
         self._judged: dict[str, Judgement] = {}
@@ -110,7 +114,7 @@ class Plates:
             known = _read_judgement(path)
             if known is None:
                 known = self._tried(plate)
-                _write(path, msgspec.json.encode(known))
+                write_bytes(path, msgspec.json.encode(known))
             if known.fault:
                 self.notes.append(
                     f"a frame put together from its plate {known.fault} beside the same frame rendered whole; "
@@ -131,7 +135,7 @@ class Plates:
             return Judgement(round(price, 4))
         light, change = self._joined(plate, plate.state)
         self._tell("renders the frame that tries its plate")
-        whole = self._whole(self.job.samples)
+        whole = self._rendered(self.job.samples)
         return Judgement(round(price, 4), fault_of(light, whole, change.region) or "")
 
     # The plate.
@@ -151,9 +155,9 @@ class Plates:
         self.built.show(plate.state)
         self._tell("renders the plate of what stands")
         with self._without_movers(plate):
-            light = self._whole(RICHER * self.job.samples)
+            light = self._rendered(RICHER * self.job.samples)
         content = _packed(light, small)
-        _write(self.folder / name_of(plate.key, content).replace(".png", ".npz"), content)
+        write_bytes(self.folder / name_of(plate.key, content).replace(".png", ".npz"), content)
         return _unpacked(content)
 
     def _small_plate(self, plate: Plate) -> Small:
@@ -235,21 +239,27 @@ class Plates:
         cycles.use_denoising = clean
         try:
             samples = max(FEWEST, self.job.samples // FEWER)
-            return read_small(self._content(samples, size=self._times, guides=True))
+            return self._read(read_small, self._content(samples, size=self._times, guides=True))
         finally:
             cycles.use_denoising = True
 
-    def _whole(self, samples: int) -> Array:
-        return self._rendered(samples)
-
     def _rendered(self, samples: int, rect: Rect | None = None) -> Array:
-        light = read_light(self._content(samples, rect=rect))
+        light = self._read(read_light, self._content(samples, rect=rect))
         height, width = self.job.height, self.job.width
         if rect is not None:
             height, width = self._times * (rect[1] - rect[0]), self._times * (rect[3] - rect[2])
         if light.shape[:2] != (height, width):
             raise UserError(f"Blender rendered a region of {light.shape[1]}x{light.shape[0]}, not {width}x{height}")
         return light
+
+    def _read[T](self, read: Callable[[bytes], T], content: bytes) -> T:
+        try:
+            return read(content)
+        except ValueError as error:
+            raise UserError(
+                f"{self.job.scene.mechanism}: {error}; see that the disk of {self.folder} has room, and run the same "
+                "command again"
+            ) from error
 
     def _content(self, samples: int, size: int = 1, rect: Rect | None = None, guides: bool = False) -> bytes:
         """Render the scene as it stands and return its passes as a file.
@@ -322,8 +332,3 @@ def _read_judgement(path: Path) -> Judgement | None:
         return msgspec.json.decode(path.read_bytes(), type=Judgement)
     except (OSError, msgspec.DecodeError):
         return None
-
-
-def _write(path: Path, content: bytes) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    write_bytes(path, content)

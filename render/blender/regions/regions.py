@@ -15,12 +15,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from scipy import ndimage
+from scipy import ndimage as typed
 
 from render.blender.regions.passes import Small
 
+ndimage: Any = typed
+"""Its types leave out what its functions take and return here."""
 Array = np.ndarray
 GREY = 0.18
 DARKEST = -6.0
@@ -31,9 +34,9 @@ LEAST = 1e-3
 """Light that is added to what divides: in the dark, ratios are noise."""
 DARKENED = -0.95
 """Light that what moves may take, at most, in parts of what there was."""
-SMOOTH = 1.5
+SMOOTH = 2.0
 """Pixels of the small picture over which the light of what moves is smooth (the deviation of a Gaussian)."""
-DIFFERENT, NEAR = 2.0, 5
+DIFFERENT, NEAR = 4.0, 3
 """Parts of 255 by which a frame may differ from the plate in its light, and the pixels of the small picture, square,
 over which means are taken."""
 MIRRORS = 0.1
@@ -68,7 +71,7 @@ def change_of(frame: Small, plate: Small) -> Change:
     expected = plate.light * (1 + np.where(mirrors, 0.0, light))
     there = plate.light * (1 + _mean(more, weight, _near))
     off = np.abs(seen(expected) - seen(there)).max(axis=-1)
-    region = _without_specks(ndimage.binary_closing(body | (off > DIFFERENT), iterations=CLOSED))
+    region = _without_specks(_closed(body | (off > DIFFERENT)))
     return Change(ndimage.binary_dilation(region, iterations=MARGIN), light)
 
 
@@ -98,6 +101,12 @@ def _near(values: Array) -> Array:
     return ndimage.uniform_filter(values, (NEAR, NEAR, 1))
 
 
+def _closed(mask: Array) -> Array:
+    """Return a mask with its gaps closed; what it has at the edge of the picture goes on beyond."""
+    wider = np.pad(mask, CLOSED, mode="edge")
+    return ndimage.binary_closing(wider, iterations=CLOSED)[CLOSED:-CLOSED, CLOSED:-CLOSED]
+
+
 def _without_specks(mask: Array) -> Array:
     labels, count = ndimage.label(mask)
     sizes = np.bincount(labels.ravel(), minlength=count + 1)
@@ -109,12 +118,14 @@ def _without_specks(mask: Array) -> Array:
 
 Rect = tuple[int, int, int, int]
 """Top, bottom, left, right in pixels of the small picture, the second and fourth exclusive."""
-BLOCKED = 0.25
-"""Cost of a pixel behind the stencil in parts of one that is rendered: most of it is denoising."""
+RENDERED, BLOCKED = 1.1, 0.35
+"""Cost of a pixel of a rectangle in parts of the mean one of the whole picture: that of denoising and of the stencil,
+and what a pixel of the region costs beside it. What moves is metal, and dearer than the ground.
+"""
 TILE = 4
 """Pixels between the places where a rectangle may be divided."""
-DEPTH, TRIED = 3, 3
-"""Divisions of divisions, and how many of each are followed."""
+DEPTH, TRIED = 2, 3
+"""Divisions of divisions, which give four rectangles at most, and how many of each are followed."""
 
 
 def rectangles(region: Array, each: float) -> list[Rect]:
@@ -130,9 +141,11 @@ def rectangles(region: Array, each: float) -> list[Rect]:
 
 
 def cost(rects: list[Rect], region: Array, each: float) -> float:
-    """Return the cost of rendering ``rects`` in parts of the cost of the whole picture."""
+    """Return the cost of rendering ``rects`` in parts of the cost of the whole picture, with that of the small one's
+    start.
+    """
     area = sum((bottom - top) * (right - left) for top, bottom, left, right in rects)
-    return float(region.sum() * (1 - BLOCKED) + BLOCKED * area + each * len(rects)) / region.size
+    return float(RENDERED * region.sum() + BLOCKED * area + each * (len(rects) + 1)) / region.size
 
 
 def _divided(region: Array, rect: Rect, each: float, depth: int) -> tuple[float, list[Rect]]:

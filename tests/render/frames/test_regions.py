@@ -6,7 +6,7 @@ import struct
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import ndimage
 
@@ -210,18 +210,20 @@ def cases(seed: int) -> tuple[np.ndarray, Change, list[tuple[int, int, int, int]
     return picture, Change(region, light), rectangles(region, 20.0)
 
 
+@settings(max_examples=25)
 @given(seed=SEEDS)
 def test_regions_join_the_plate_without_a_seam(seed: int) -> None:
     still, change, rects = cases(seed)
     alone = joined(still, change, [], [])
-    assert joined(still, change, rects, crops(alone, rects)) == pytest.approx(alone, rel=1e-5)
+    assert np.allclose(joined(still, change, rects, crops(alone, rects)), alone, rtol=1e-5)
     brighter = joined(still, change, rects, crops(alone + 1, rects)) - alone
     assert brighter.min() > -1e-5
     assert brighter.max() < 1 + 1e-5
     full = np.kron(change.region, np.ones((TIMES, TIMES), bool))
-    assert brighter[~full] == pytest.approx(0, abs=1e-6)
+    assert np.abs(brighter[~full]).max(initial=0.0) < 1e-6
     inner = ndimage.binary_erosion(change.region, iterations=regions.MARGIN + 1, border_value=1)
-    assert brighter[np.kron(inner, np.ones((TIMES, TIMES), bool))] == pytest.approx(1, abs=1e-5)
+    inside = brighter[np.kron(inner, np.ones((TIMES, TIMES), bool))]
+    assert np.abs(inside - 1).max(initial=0.0) < 1e-5
     steps = max(np.abs(np.diff(brighter, axis=axis)).max(initial=0.0) for axis in (0, 1))
     assert steps <= 1.01 * 2 / (2 * regions.BLEND * TIMES + 1)
 

@@ -62,8 +62,6 @@ def test_a_film_without_a_plate_renders_what_it_did(out_root: Path, shot: Shot, 
     assert {picture.plate for picture in job.pictures} == {-1}
     stills = pictures(shot, preset, whole=True)
     assert [picture.key for picture in job.pictures] == [stills.key(frame) for frame in range(film.count)]
-        pictures(shot, preset, whole=True).key(f) for f in range(film.count)
-    ]
 
 
 def plate_key(shot: Shot, preset: Preset = SMALL) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import signal
 import subprocess
 import sys
@@ -9,7 +10,9 @@ import time
 from pathlib import Path
 
 import msgspec
+import numpy as np
 import pytest
+from PIL import Image
 
 from render.film.inputs import read_film
 from render.frames import frames
@@ -21,7 +24,7 @@ from shared.contract.shot import Camera, Label, Shot, write_shot
 from shared.stage.paths import ROOT, Out
 from tools.fixtures import film_fixture
 
-SMALL = Preset("small", 192, 108, 8)
+SMALL = Preset("small", 320, 180, 8)
 """Large enough for regions to pay."""
 SHOT = Shot(turns=1, seconds_per_turn=1.0)
 """Thirty frames of a camera that stands."""
@@ -168,5 +171,7 @@ def test_a_plate_that_failed_its_trial_is_told_and_leaves_frames_whole(
     said = capsys.readouterr().out
     assert "a frame put together from its plate differs by 9.0 of 255 in the mean" in said
     assert "all frames of this camera are rendered whole" in said
-    assert rendered(out, FRAMES[:1], whole=True) == apart
+    whole = rendered(out, FRAMES[:1], whole=True)
+    first, second = (np.asarray(Image.open(io.BytesIO(content))).astype(int) for (content,) in (whole, apart))
+    assert np.abs(first - second).mean() < 3  # its noise is that of a process which makes plates
     assert not list(folder.glob("*.npz"))

@@ -23,7 +23,7 @@ class Picture(msgspec.Struct, kw_only=True, frozen=True):
 
 
 class Plate(msgspec.Struct, kw_only=True, frozen=True):
-    """What stands while the camera does: rendered once, so that a frame is rendered only where it differs."""
+    """The picture of what stands while the camera does: rendered once for all its frames."""
 
     key: str
     """Hash of what stands."""

@@ -9,7 +9,7 @@ from typing import Any
 
 import msgspec
 
-from render.film.framing import SENSOR, studio
+from render.film.framing import SENSOR, half_field, studio
 from render.film.scene import Scene, State
 from render.film.solids import MILLIMETRE
 from render.presets import Preset
@@ -39,8 +39,8 @@ def scene_key(scene: Scene, preset: Preset, blender: str) -> str:
         del piece["stl"]
     shown = {key: part for key, part in plain.items() if key not in ("mechanism", "fps")}
     picture = [preset.width, preset.height, preset.samples, preset.motion_blur]
-    turned = studio(scene.studio.up).tolist()
-    return hash_of([shown, picture, _sources(), blender, SENSOR, MILLIMETRE, Z, turned])
+    turned, field = studio(scene.studio.up).tolist(), half_field(SENSOR, preset.aspect)
+    return hash_of([shown, picture, _sources(), blender, SENSOR, MILLIMETRE, Z, turned, field])
 
 
 def frame_key(scene: str, states: Sequence[State]) -> str:

@@ -45,7 +45,7 @@ WHOLE = 1.0
 
 
 class Judgement(msgspec.Struct, forbid_unknown_fields=True):
-    """What the trial of a plate found; regions are rendered if nothing speaks against it."""
+    """Verdict on a plate by the frame that tries it; regions are rendered if nothing speaks against it."""
 
     cost: float
     """Cost of the regions, in parts of the whole frame."""
@@ -145,12 +145,12 @@ class Plates:
             path = next(iter(sorted(self.folder.glob(f"{plate.key}-*.npz"))), None)
             kept = None if path is None else _read_plate(path, plate.key)
             if kept is None:
-                kept = self._made(plate)
+                kept = self._render_plate(plate)
             stencil.paint_stencil(self.card, kept.light)
             self._kept = {plate.key: kept}  # one at a time: those of large pictures are large
         return self._kept[plate.key]
 
-    def _made(self, plate: Plate) -> Kept:
+    def _render_plate(self, plate: Plate) -> Kept:
         small = self._small_plate(plate)
         self.built.show(plate.state)
         self._tell("renders the plate of what stands")

@@ -44,7 +44,7 @@ MIRRORS = 0.1
 CLOSED = 2
 """Half the width of gaps in a region that are rendered as well: the denoiser needs its neighbours."""
 SPECK = 16
-"""Pixels of a region, at least: smaller ones are noise."""
+"""Pixels of a region, and of a hole in one, at least: smaller ones are noise."""
 MARGIN, BLEND = 2, 1
 """Pixels of the small picture around what differs, and how many of these region and plate take to become each other."""
 NEARER, ALBEDO, TURNED = 1e-4, 0.01, 0.01
@@ -72,7 +72,7 @@ def change_of(frame: Small, plate: Small) -> Change:
     there = plate.light * (1 + _mean(more, weight, _near))
     off = np.abs(seen(expected) - seen(there)).max(axis=-1)
     region = _without_specks(_closed(body | (off > DIFFERENT)))
-    return Change(ndimage.binary_dilation(region, iterations=MARGIN), light)
+    return Change(~_without_specks(~ndimage.binary_dilation(region, iterations=MARGIN)), light)
 
 
 def seen(light: Array) -> Array:
@@ -200,13 +200,20 @@ def joined(plate: Array, change: Change, rects: list[Rect], rendered: list[Array
     """
     times = plate.shape[0] // change.region.shape[0]
     picture = plate * (1 + enlarged(change.light, times))
-    share = _share(change.region, times)[..., None]
+    mixed, total = np.zeros_like(picture), np.zeros((*picture.shape[:2], 1), np.float32)
     for rect, patch in zip(rects, rendered, strict=True):
         top, bottom, left, right = (times * edge for edge in rect)
-        place = slice(top, bottom), slice(left, right)
-        picture[place] += (patch - picture[place]) * share[place]
-        share[place] = 0  # what two rectangles show counts once
-    return picture
+        weight = np.outer(_ramp(bottom - top, times), _ramp(right - left, times))[..., None]
+        mixed[top:bottom, left:right] += weight * patch
+        total[top:bottom, left:right] += weight
+    share = np.where(total[..., 0] > 0, _share(change.region, times), 0.0)[..., None]
+    return picture + (mixed / np.maximum(total, 1e-9) - picture) * share
+
+
+def _ramp(size: int, times: int) -> Array:
+    """Return the weights of a rectangle's rows: they fall towards its edge, where the denoiser had no neighbours."""
+    inside = np.minimum(np.arange(size), np.arange(size)[::-1]) + 0.5
+    return np.minimum(inside / (2 * MARGIN * times), 1.0).astype(np.float32)
 
 
 def enlarged(values: Array, times: int) -> Array:

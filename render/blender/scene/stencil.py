@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from render.film.framing import CameraPose, half_field
-from render.film.scene import StudioSpec
+from render.film.framing import half_field
+from render.film.scene import CameraPose, StudioSpec
 
 # pyright: reportAttributeAccessIssue=false
 # bpy fills itself in when it is imported, its stubs are empty.

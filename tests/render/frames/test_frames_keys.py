@@ -115,7 +115,10 @@ def test_an_edit_of_what_blender_runs_changes_every_key(
 
 
 def test_blenders_side_takes_nothing_from_outside_that_no_key_holds():
-    numbers, telling = {"SENSOR", "MILLIMETRE", "Z", "studio"}, {"picture_file", "errors", "files", "signals"}
+    numbers, telling = (
+        {"SENSOR", "MILLIMETRE", "Z", "studio", "half_field"},
+        {"picture_file", "errors", "files", "signals"},
+    )
     blender = [f"render.blender.{part}" for part in ("job", "regions", "scene", "worker")]
     inside = (*blender, "render.film.scene", "render.letters", "render.film.section", "render.looks")
     places = [render_keys.BLENDER / name for name in render_keys.BLENDER_SOURCES]

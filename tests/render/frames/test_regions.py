@@ -174,13 +174,10 @@ def test_four_rectangles_at_most_cover_a_region_and_cost_no_more_than_one(seed: 
     assert bool(rects) == bool(region.any())
     if rects:
         rows, columns = np.nonzero(region)
-        one = (
-            max(rows.min() - 2, 0),
-            min(rows.max() + 3, SIZE[0]),
-            max(columns.min() - 2, 0),
-            min(columns.max() + 3, SIZE[1]),
-        )
-        assert cost(rects, region, each) <= cost([one], region, each) + 1e-9
+        top, left = max(rows.min() - regions.MARGIN, 0), max(columns.min() - regions.MARGIN, 0)
+        bottom, right = rows.max() + 1 + regions.MARGIN, columns.max() + 1 + regions.MARGIN
+        around = top, min(bottom, SIZE[0]), left, min(right, SIZE[1])
+        assert cost(rects, region, each) <= cost([around], region, each) + 1e-9
 
 
 @given(seed=SEEDS)

@@ -1,7 +1,8 @@
-"""``make bench``: every code on every problem, the table of docs/benchmarks.md, out/bench.md and out/bench.json.
+"""``make bench``: every code on every problem, docs/benchmarks.md, out/bench.md and out/bench.json.
 
 python -m benchmarks                  all of it
-python -m benchmarks calls            the calls as users make them alone, only shown
+python -m benchmarks calls            the four-bar's sweep and calls as users make them alone, only shown
+python -m benchmarks batch            25 000 designs of a four-bar in one call, only shown
 python -m benchmarks clearance        a slider-crank with play beside the ideal one, only shown
 python -m benchmarks dynamics         the dynamics problems alone, only shown
 python -m benchmarks derivatives      gradients in ten numbers beside their motions, only shown
@@ -10,6 +11,7 @@ python -m benchmarks machines         gears, a Geneva, a cam and a stiff contact
 python -m benchmarks film [--help]     what a film costs (make bench-film)
 python -m benchmarks live [--help]     from a slider of the live page to the picture (make bench-live)
 python -m benchmarks cluster          what a cluster costs, a task and a worker, only shown
+python -m benchmarks scaling          a long row of four-bars, cost of a body, only shown
 python -m benchmarks simulations       many simulations and single ones with events beside peers, only shown
 python -m benchmarks synthesis        lengths for a path alone, only shown
 python -m benchmarks start            the table of start-up (make bench-start)
@@ -22,37 +24,30 @@ from __future__ import annotations
 
 import sys
 
-from benchmarks import batch, clearance, derivatives, engines, rows, synthesis, table, tolerances
+from benchmarks import batch, clearance, derivatives, engines, rows, start, synthesis, tolerances
 from benchmarks.calls import measure as calls
 from benchmarks.dynamics import measure as dynamics
-from benchmarks.dynamics import scaling
 from benchmarks.dynamics.settings import tune_all
 from benchmarks.film import measure as film
 from benchmarks.film import timing
-from benchmarks.four_bar import STEPS
-from benchmarks.harness import keep_quicker, printed_by
 from benchmarks.machines import measure as machines
 from benchmarks.rows import Bar, Row
 from benchmarks.simulations import measure as simulations
-from benchmarks.start import measure as start
 from shared.stage.console import run_cli, say
 from shared.stage.errors import UserError
 
-CODES = ("mbsd", "numpy", "exudyn", "pylinkage")
-ROUNDS = 8
-BARS = {"exudyn": 20.0, "numpy": 200.0, "pylinkage": 2.0}
-"""How many times the time of mbsd each peer takes at least."""
-LARGEST_ERROR = 1e-12
 PARTS = {
-    "calls": calls,
-    "clearance": clearance,
-    "derivatives": derivatives,
-    "dynamics": dynamics,
-    "engines": engines,
-    "machines": machines,
-    "simulations": simulations,
-    "synthesis": synthesis,
-    "tolerances": tolerances,
+    "calls": calls.measured,
+    "batch": batch.measured,
+    "simulations": simulations.measured,
+    "tolerances": tolerances.measured,
+    "synthesis": synthesis.measured,
+    "derivatives": derivatives.measured,
+    "machines": machines.measured,
+    "engines": engines.measured,
+    "clearance": clearance.measured,
+    "dynamics": dynamics.measured,
+    "scaling": dynamics.scaling,
 }
 """Benchmarks that run alone, by their word."""
 OTHERS = ("cluster", "film", "live", "start", "table", "tune [names]")
@@ -64,23 +59,23 @@ def main() -> int:
         case []:
             return _all()
         case [part] if part in PARTS:
-            rows_of_part, bars = PARTS[part].measured()
+            rows_of_part, bars = PARTS[part]()
             rows.show_all(rows_of_part)
             return _tell(bars)
         case ["film", *words]:
             return film.measured(words)
         case ["live", *words]:
-            from benchmarks.live import measure as live
+            from benchmarks import live
 
             return live.measured(words)
         case ["cluster"]:
-            from benchmarks.cluster import measure as cluster
+            from benchmarks import cluster
 
             return cluster.measured()
         case ["start"]:
             return start.measured()
         case ["table"]:
-            table.write(*rows.read())
+            rows.write_tables(*rows.read())
         case ["tune", *names]:
             tune_all(names)
         case other:
@@ -91,39 +86,16 @@ def main() -> int:
 
 
 def _all() -> int:
-    best: dict[str, Row] = {}
-    for turn in range(ROUNDS):
-        for code in CODES:
-            keep_quicker(best, code, Row(**printed_by("benchmarks.four_bar.measure", code, what=code)))
-        say("bench", f"round {turn + 1} of {ROUNDS} done")
-    chosen = [best[code] for code in CODES]
-    rows.show(chosen, STEPS)
-    exact = chosen[0].error < LARGEST_ERROR
-    bars = []
-    for code, wanted in BARS.items():
-        ratio = best[code].seconds / chosen[0].seconds
-        bars.append(Bar(chosen[0].problem, wanted, ratio, code, best[code].settings, exact and ratio >= wanted))
-    everything = list(chosen)
-    for part in (
-        calls.measured,
-        batch.measured,
-        simulations.measured,
-        tolerances.measured,
-        synthesis.measured,
-        derivatives.measured,
-        machines.measured,
-        engines.measured,
-        clearance.measured,
-        dynamics.measured,
-        scaling.measured,
-    ):
+    everything: list[Row] = []
+    bars: list[Bar] = []
+    for part in PARTS.values():
         more, more_bars = part()
         everything += more
         bars += more_bars
     films, missed = timing.rows_of_films()
-    rows.show_all(everything[len(chosen) :] + films)
+    rows.show_all(everything + films)
     rows.write(everything + films, bars)
-    table.write(everything, bars)
+    rows.write_tables(everything, bars)
     for line in missed:
         say("bench", f"missed: {line}")
     say("bench", "out/bench.md, out/bench.json and the table of docs/benchmarks.md written")

@@ -1,4 +1,7 @@
-"""Batch: 25 000 four-bar designs x 360 angles in one call, path of a coupler point; error: worst coordinate (m)."""
+"""Batch of 25 000 four-bar designs x 360 angles in one call: path of a coupler point.
+
+Error: the worst coordinate (m).
+"""
 
 from __future__ import annotations
 

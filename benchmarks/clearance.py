@@ -1,4 +1,6 @@
-"""Rows of the slider-crank with play: ideal, with 0.05 and 0.5 mm, without and with friction, in turn in one process.
+"""Rows of the slider-crank with play: ideal, 0.05 and 0.5 mm, without and with friction.
+
+All are timed in turn in one process.
 
 The error is that of the slider's place over the first quarter turn against equations of its own by scipy (m): every
 impact makes a difference several times larger, and two turns have some sixty.

@@ -124,7 +124,10 @@ def measured() -> tuple[list[Row], list[Bar]]:
 def error(
     m: mbsd.Mechanism, numbers: list[str], duration: float, measure: Measure, gradient: np.ndarray, step: float = 1e-5
 ) -> float:
-    """Largest difference from central differences of whole motions, as part of the largest derivative by each."""
+    """Return the largest difference from central differences of whole motions.
+
+    It is a part of the largest derivative by each number.
+    """
     worst = 0.0
     for k, name in enumerate(numbers):
         number, total = number_named(m, name), 0.0

@@ -1,4 +1,4 @@
-"""Rows of engines: sweeps with reactions beside a four-bar's of as many angles, in turn in one process; the map.
+"""Rows of engines: sweeps with reactions beside a four-bar's, in turn in one process; the map.
 
 The sweep's error is the largest gap of a joint (m or rad).
 """

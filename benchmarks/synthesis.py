@@ -1,4 +1,6 @@
-"""Path synthesis: a four-bar whose coupler point passes through four points, any pivots and lengths within bounds.
+"""Path synthesis: a four-bar whose coupler point passes through four points.
+
+Any pivots and lengths within bounds are allowed.
 
 The points are of a known four-bar, so an exact design exists. The error is the largest distance (m) of a point from the
 path, taken from a sweep by mbsd of each code's design; times are of the processor, which other programs do not change.

@@ -1,4 +1,4 @@
-"""Rows of tolerances: mbsd.tolerances, the closed form with numpy, and a loop that solves each pose with scipy.
+"""Rows of tolerances: mbsd.tolerances, the closed form with numpy, and a loop with scipy.
 
 Processor time, which other work on the machine disturbs less. The loop takes a sample of the machines and is scaled.
 """

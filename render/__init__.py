@@ -2,5 +2,6 @@
 
 from shared.stage.paths import ROOT
 
-FRAME_SOURCES = (ROOT / "render" / "magnitudes.py",)
-"""Sources of what the frame feels: stages that show it are made again when these change."""
+_INSIGHTS = ROOT / "render" / "insights"
+FRAME_SOURCES = (ROOT / "render" / "magnitudes.py", _INSIGHTS, *sorted((_INSIGHTS / "languages").glob("*.toml")))
+"""Sources of magnitudes and insights: stages that show them are made again when these change."""

@@ -1,4 +1,4 @@
-"""The solver's kernels, compiled beside what a user asked for: ``python -m tools.compiling begin``, or ``wait``.
+"""Compile the solver's kernels in the background: ``python -m tools.compiling begin``, or ``wait``.
 
 begin   ``python -m mbsd compile`` in a process of its own, at the lowest priority, unless it is done or runs already
 wait    until that has ended, and again here where it failed: tests and measurements want all kernels compiled

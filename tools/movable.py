@@ -1,4 +1,4 @@
-"""Lets the programs in .venv/bin find their Python beside them, so that they still run it where a clone was copied to.
+"""Programs in .venv/bin that find their Python beside them, so that a moved clone still runs.
 
 An environment of ``uv venv --relocatable`` has such programs from the beginning; this is for those made before.
 """

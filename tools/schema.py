@@ -1,4 +1,4 @@
-"""Publish the file formats: ``python -m tools.schema`` writes docs/schema/*.schema.json from the structs."""
+"""File formats, published: ``python -m tools.schema`` writes docs/schema/*.schema.json from structs."""
 
 from __future__ import annotations
 

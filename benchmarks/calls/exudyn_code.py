@@ -1,112 +1,96 @@
-"""Exudyn: SolveStatic with the crank's angle as load, and a kinematic tree by an explicit method; sensors record.
+"""Exudyn: its static solver along the crank's angle, and a tree by an explicit method.
 
-Again is ``Assemble`` and the solver: it puts the system back to its start.
+Its static solver starts from the reference pose, so a sweep is of a fresh system. A call again is ``Assemble`` and the
+solver: it puts the system back to its start. Sensors of calls record.
 """
 
 from __future__ import annotations
 
 import itertools
 import math
-import sys
-from importlib import metadata
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from benchmarks.calls import (
-    CHANGED,
-    DURATION,
-    GRAVITY,
-    LENGTH,
-    MASS,
-    OUTPUTS,
-    SIMULATION,
-    STEPS,
-    SWEEP,
-    Call,
-    energy_drift,
-    rocker_error,
-)
-from benchmarks.four_bar.exudyn_code import four_bar
+from benchmarks import calls, exudyn_systems
+from benchmarks.exudyn_systems import STATIC, System, exu, hinge, sensor, settings
+from benchmarks.harness import Fresh
 
-sys.exudynFast = True  # type: ignore[attr-defined]  # the build without range checks
-import exudyn as exu  # noqa: E402
-from exudyn import utilities as u  # noqa: E402
-
-exu.config.printToConsole = False
-
-VERSION = metadata.version("exudyn")
+VERSION = exudyn_systems.VERSION
+SPAN = calls.ANGLES[-1]
 
 
-def calls() -> list[Call]:
-    """By problem."""
-    return [*_sweeps(), _simulation()]
+def four_bar(law: Callable[[float], float]) -> System:
+    """Return the linkage at crank angle 0, not yet assembled.
+
+    ``law``: crank angle (rad) at a time or load factor.
+    """
+    system = System()
+    for key, (*pose, length) in enumerate(calls.POSES):
+        system.body(key, pose, mass=length, inertia=length**3 / 12)
+    for first, place, second, other in calls.PINS:
+        system.pin(first, place, second, other)
+    system.drive(0, law)
+    return system
 
 
-def _settings(steps: int, period: float) -> Any:
-    settings = exu.SimulationSettings()
-    settings.solution.file.write = False
-    settings.solution.sensors.writePeriod = period
-    settings.staticSolver.numberOfLoadSteps = steps
-    settings.staticSolver.verboseMode = 0
-    settings.staticSolver.stabilizerODE2term = 1e-6
-    settings.staticSolver.newton.useModifiedNewton = False
-    settings.timeIntegration.numberOfSteps = steps
-    settings.timeIntegration.endTime = DURATION
-    settings.timeIntegration.verboseMode = 0
-    settings.timeIntegration.automaticStepSize = False
-    return settings
+def run(problem: str) -> tuple[str, Fresh, Callable[[Any], float]]:
+    """Return settings, a fresh run and the error of its result."""
+    return {calls.FOUR_BAR: _sweep, calls.SIMULATION: _simulation}.get(problem, lambda: _call(problem))()
 
 
-def _sweeps() -> list[Call]:
+def _sweep() -> tuple[str, Fresh, Callable[[Any], float]]:
+    steps = len(calls.ANGLES)
+    chosen = settings(steps)
+
+    def fresh() -> Callable[[], Any]:
+        system = four_bar(lambda t: SPAN * t)
+        system.own.Assemble()
+        return lambda: system.own.SolveStatic(chosen)
+
+    def error(_: Any) -> float:
+        system = four_bar(lambda t: SPAN * t)
+        sensors = system.sensors((1, 2))
+        system.own.Assemble()
+        system.own.SolveStatic(settings(steps, 1 / steps))
+        out = 0.0
+        for k, rows in enumerate(map(system.recorded, sensors)):
+            out = max(out, calls.worst(rows[:, 3] + calls.START[k], calls.exact(SPAN * rows[:, 0])[k]))
+        return out
+
+    return STATIC, fresh, error
+
+
+def _call(problem: str) -> tuple[str, Fresh, Callable[[Any], float]]:
     turns, speeds = [1.0], itertools.count()
-    system, nodes, (_, _, swing) = four_bar(lambda t: 2 * math.pi * turns[0] * t)
-    kind = exu.OutputVariableType.Coordinates
-    sensors = [
-        system.AddSensor(u.SensorNode(nodeNumber=nodes[k], storeInternal=True, outputVariableType=kind)) for k in (0, 2)
-    ]
-    settings = _settings(STEPS, 0.5 / STEPS)
+    system = four_bar(lambda t: 2 * math.pi * turns[0] * t)
+    sensors = system.sensors((0, 2))
+    chosen = settings(calls.STEPS, 0.5 / calls.STEPS)
 
-    def again() -> list[np.ndarray]:
-        system.Assemble()
-        system.SolveStatic(settings)
-        return [np.array(system.GetSensorStoredData(sensor)) for sensor in sensors]
-
-    def changed() -> list[np.ndarray]:
-        turns[0] = 1.0 + 1e-6 * next(speeds)
-        return again()
+    def call() -> list[np.ndarray]:
+        if problem == calls.CHANGED:
+            turns[0] = 1.0 + 1e-6 * next(speeds)
+        system.own.Assemble()
+        system.own.SolveStatic(chosen)
+        return [system.recorded(number) for number in sensors]
 
     def error(result: list[np.ndarray]) -> float:
-        return rocker_error(result[0][:, 3], result[1][:, 3] + swing)  # sensors give the change against the start
+        return calls.rocker_error(result[0][:, 3], result[1][:, 3] + calls.START[1])
 
-    way = "SolveStatic, full Newton, stabilizer 1e-6, positions only"
-    return [Call(SWEEP, f"Assemble, {way}", again, error), Call(CHANGED, f"Assemble, {way}", changed, error)]
+    return f"Assemble, {STATIC}", lambda: call, error
 
 
-def _simulation() -> Call:
+def _simulation() -> tuple[str, Fresh, Callable[[Any], float]]:
     system = exu.SystemContainer().AddSystem()
-    node = system.AddNode(
-        u.NodeGenericODE2(
-            referenceCoordinates=[0.0], initialCoordinates=[0.0], initialCoordinates_t=[0.0], numberOfODE2Coordinates=1
-        )
-    )
-    system.AddObject(
-        u.ObjectKinematicTree(
-            nodeNumber=node, jointTypes=[exu.JointType.RevoluteZ], linkParents=[-1],
-            jointTransformations=exu.Matrix3DList([np.eye(3)]), jointOffsets=exu.Vector3DList([[0, 0, 0]]),
-            linkInertiasCOM=exu.Matrix3DList([np.diag([0.0, 0.0, MASS * LENGTH**2 / 12])]),
-            linkCOMs=exu.Vector3DList([[LENGTH / 2, 0, 0]]), linkMasses=[MASS], gravity=[0, -GRAVITY, 0],
-        )
-    )  # fmt: skip
-    kinds = (exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t)
-    sensors = [
-        system.AddSensor(u.SensorNode(nodeNumber=node, storeInternal=True, outputVariableType=kind)) for kind in kinds
-    ]
-    settings = _settings(OUTPUTS, 0.5 * DURATION / OUTPUTS)
+    node = hinge(system, calls.LENGTH / 2, calls.MASS, calls.MASS * calls.LENGTH**2 / 12, calls.GRAVITY)
+    sensors = [sensor(system, node, kind) for kind in ("Coordinates", "Coordinates_t")]
+    chosen = settings(calls.OUTPUTS, 0.5 * calls.DURATION / calls.OUTPUTS, calls.DURATION)
 
-    def again() -> list[np.ndarray]:
+    def call() -> list[np.ndarray]:
         system.Assemble()
-        system.SolveDynamic(settings, solverType=exu.DynamicSolverType.RK44)
-        return [np.array(system.GetSensorStoredData(sensor))[:, 1] for sensor in sensors]
+        system.SolveDynamic(chosen, solverType=exu.DynamicSolverType.RK44)
+        return [np.array(system.GetSensorStoredData(number))[:, 1] for number in sensors]
 
-    return Call(SIMULATION, f"Assemble, tree, RK44, steps {OUTPUTS}", again, lambda result: energy_drift(*result))
+    words = f"Assemble, tree, RK44, steps {calls.OUTPUTS}"
+    return words, lambda: call, lambda result: calls.energy_drift(*result)

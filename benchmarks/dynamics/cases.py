@@ -11,7 +11,10 @@ from benchmarks.dynamics.pins import Pinned, Record
 
 @dataclass(frozen=True)
 class Case:
-    """``limits`` and ``errors`` go by the same names; ``bar``: times our time the best peer takes at least."""
+    """A problem; ``limits`` and ``errors`` go by the same names.
+
+    ``bar``: times our time the best peer takes at least.
+    """
 
     name: str
     model: Pinned
@@ -37,7 +40,10 @@ def _n_four_bar(loops: int) -> Case:
 
 
 def case(name: str) -> Case:
-    """By its name: "A01 pendulum", "A02 N=10" with any number of loops, "A03 squeezer", "chain of 100 links"."""
+    """Return a problem by its name, as "A02 N=10" with any number of loops.
+
+    The others are "A01 pendulum", "A03 squeezer" and "chain of 100 links".
+    """
     if name.startswith("A02 N="):
         return _n_four_bar(int(name.removeprefix("A02 N=")))
     module = {pendulum.NAME: pendulum, squeezer.NAME: squeezer, chain.NAME: chain}[name]

@@ -1,4 +1,4 @@
-"""A mechanism of pins as a differential-algebraic system F(y, y') = 0 with its Newton matrix, for SUNDIALS IDA.
+"""A mechanism of pins as a DAE F(y, y') = 0 with its Newton matrix, for SUNDIALS IDA.
 
     y = (q, v, lam)            q' - v = 0,              M v' + J^T lam - Q = 0,    J v' - gamma + 2 b J v + b^2 Phi = 0
     y = (q, v, lam, mu)        q' - v + J^T mu = 0,     the same,                  J v = 0,     Phi = 0

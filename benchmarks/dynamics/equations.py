@@ -1,4 +1,4 @@
-"""The equations of a mechanism of pins in numpy, as one who knows the subject writes them, for scipy and SUNDIALS.
+"""Equations of a mechanism of pins in numpy, as experts write them, for scipy and SUNDIALS.
 
 Reference coordinates q = (x, y, theta) of every body. M is diagonal, so the multipliers come from
 
@@ -30,7 +30,10 @@ def equations(model: Pinned) -> Equations:
 
 
 class Equations:
-    """Equations of one mechanism, dense; flat q and v of length ``size`` = 3 * bodies, ``rows`` = 2 * pins."""
+    """Equations of one mechanism, dense.
+
+    Flat q and v have the length ``size`` = 3 * bodies, constraints ``rows`` = 2 * pins.
+    """
 
     def __init__(self, model: Pinned) -> None:
         count, pins = len(model.solids), len(model.pins)

@@ -1,4 +1,6 @@
-"""Exudyn: rigid bodies with pin constraints and implicit integrators; for the pendulum also its two shorter ways.
+"""Exudyn: rigid bodies with pin constraints and implicit integrators.
+
+The pendulum has two shorter ways.
 
 The pendulum as a point mass on a distance constraint, which is Exudyn's own example of A01, or as a kinematic tree of
 one hinge, which has no constraint and so allows the explicit integrators.
@@ -7,24 +9,18 @@ one hinge, which has no constraint and so allows the explicit integrators.
 from __future__ import annotations
 
 import contextlib
-import sys
 from collections.abc import Callable, Iterator
-from importlib import metadata
 from typing import Any
 
 import numpy as np
 
+from benchmarks import exudyn_systems
 from benchmarks.dynamics.cases import Case
-from benchmarks.dynamics.pins import GROUND, Record
+from benchmarks.dynamics.pins import Record
 from benchmarks.dynamics.settings import steps_of
+from benchmarks.exudyn_systems import System, exu, hinge, sensor, u
 
-sys.exudynFast = True  # type: ignore[attr-defined]  # the build without range checks
-import exudyn as exu  # noqa: E402
-from exudyn import utilities as u  # noqa: E402
-
-exu.config.printToConsole = False
-
-VERSION = metadata.version("exudyn")
+VERSION = exudyn_systems.VERSION
 SAMPLES = 1000
 
 
@@ -74,15 +70,8 @@ def prepare(case: Case, settings: dict[str, Any]) -> tuple[Callable[[], Callable
 
 
 def _settings(case: Case, settings: dict[str, Any], period: float) -> Any:
-    s = exu.SimulationSettings()
-    s.solution.file.write = False
-    s.solution.sensors.writePeriod = period
-    s.parallel.numberOfThreads = 1
-    s.timeIntegration.numberOfSteps = settings["steps"]
-    s.timeIntegration.endTime = case.duration
+    s = exudyn_systems.settings(settings["steps"], period, case.duration)
     s.timeIntegration.adaptiveStep = False
-    s.timeIntegration.automaticStepSize = False
-    s.timeIntegration.verboseMode = 0
     s.timeIntegration.generalizedAlpha.spectralRadius = settings.get("rho", 0.9)
     newton = settings.get("newton", "each step")
     s.timeIntegration.newton.useModifiedNewton = newton != "full"
@@ -99,49 +88,30 @@ Built = tuple[Any, Callable[[], Record]]
 
 
 def _pins(case: Case, recorded: bool) -> Built:
-    system = exu.SystemContainer().AddSystem()
-    model = case.model
-    nodes, bodies = [], []
-    for solid in model.solids:
-        nodes.append(
-            system.AddNode(
-                u.NodeRigidBody2D(referenceCoordinates=list(solid.pose), initialVelocities=list(solid.velocity))
-            )
-        )
-        bodies.append(system.AddObject(u.RigidBody2D(nodeNumber=nodes[-1], mass=solid.mass, inertia=solid.inertia)))
+    system, model = System(), case.model
+    own = system.own
+    for key, solid in enumerate(model.solids):
+        system.body(key, solid.pose, solid.mass, solid.inertia, solid.velocity)
         if model.gravity:
-            mass = system.AddMarker(u.MarkerBodyMass(bodyNumber=bodies[-1]))
-            system.AddLoad(u.LoadMassProportional(markerNumber=mass, loadVector=[0, -model.gravity, 0]))
-    ground = system.AddObject(u.ObjectGround())
-
-    def marker(body: int, point: tuple[float, float]) -> Any:
-        number = ground if body == GROUND else bodies[body]
-        return system.AddMarker(u.MarkerBodyPosition(bodyNumber=number, localPosition=[*point, 0]))
-
+            mass = own.AddMarker(u.MarkerBodyMass(bodyNumber=system.bodies[key]))
+            own.AddLoad(u.LoadMassProportional(markerNumber=mass, loadVector=[0, -model.gravity, 0]))
     for p in model.pins:
-        system.AddObject(u.RevoluteJoint2D(markerNumbers=[marker(p.i, p.a), marker(p.j, p.b)]))
+        system.pin(p.i, p.a, p.j, p.b)
     for body, torque in model.torques:
-        turned = system.AddMarker(u.MarkerBodyRigid(bodyNumber=bodies[body]))
-        system.AddLoad(u.Torque(markerNumber=turned, loadVector=[0, 0, torque]))
+        turned = own.AddMarker(u.MarkerBodyRigid(bodyNumber=system.bodies[body]))
+        own.AddLoad(u.Torque(markerNumber=turned, loadVector=[0, 0, torque]))
     for s in model.springs:
-        ends = [marker(s.i, s.a), marker(s.j, s.b)]
-        system.AddObject(u.SpringDamper(markerNumbers=ends, stiffness=s.stiffness, referenceLength=s.length))
-    places, speeds = (_sensors(system, nodes, kind) if recorded else [] for kind in ("Coordinates", "Coordinates_t"))
-    system.Assemble()
+        ends = [system.point(s.i, s.a), system.point(s.j, s.b)]
+        own.AddObject(u.SpringDamper(markerNumbers=ends, stiffness=s.stiffness, referenceLength=s.length))
+    keys = range(len(model.solids)) if recorded else ()
+    places, speeds = (system.sensors(keys, kind) for kind in ("Coordinates", "Coordinates_t"))
+    own.Assemble()
 
     def read() -> Record:
-        """The sensors give the change against the pose at the start."""
-        change, velocities = (
-            np.stack([np.array(system.GetSensorStoredData(k)) for k in of], axis=1) for of in (places, speeds)
-        )
+        change, velocities = (np.stack([system.recorded(k) for k in of], axis=1) for of in (places, speeds))
         return Record(change[:, 0, 0], change[:, :, 1:4] + model.start[0], velocities[:, :, 1:4])
 
-    return system, read
-
-
-def _sensors(system: Any, nodes: list[Any], kind: str) -> list[Any]:
-    output = getattr(exu.OutputVariableType, kind)
-    return [system.AddSensor(u.SensorNode(nodeNumber=n, storeInternal=True, outputVariableType=output)) for n in nodes]
+    return own, read
 
 
 def _distance(case: Case, recorded: bool) -> Built:
@@ -154,8 +124,7 @@ def _distance(case: Case, recorded: bool) -> Built:
     length = -case.model.pins[0].b[0]
     system.AddObject(u.DistanceConstraint(markerNumbers=[pivot, place], distance=length))
     system.AddLoad(u.Force(markerNumber=place, loadVector=[0, -solid.mass * case.model.gravity, 0]))
-    kinds = ("Coordinates", "Coordinates_t") if recorded else ()
-    sensors = [_sensors(system, [node], kind)[0] for kind in kinds]
+    sensors = [sensor(system, node, kind) for kind in ("Coordinates", "Coordinates_t") if recorded]
     system.Assemble()
 
     def read() -> Record:
@@ -172,22 +141,8 @@ def _tree(case: Case, recorded: bool) -> Built:
     system = exu.SystemContainer().AddSystem()
     (solid,) = case.model.solids
     length = -case.model.pins[0].b[0]
-    node = system.AddNode(
-        u.NodeGenericODE2(
-            referenceCoordinates=[0.0], initialCoordinates=[solid.pose[2]], initialCoordinates_t=[0.0],
-            numberOfODE2Coordinates=1,
-        )
-    )  # fmt: skip
-    system.AddObject(
-        u.ObjectKinematicTree(
-            nodeNumber=node, jointTypes=[exu.JointType.RevoluteZ], linkParents=[-1],
-            jointTransformations=exu.Matrix3DList([np.eye(3)]), jointOffsets=exu.Vector3DList([[0, 0, 0]]),
-            linkInertiasCOM=exu.Matrix3DList([np.zeros((3, 3))]), linkCOMs=exu.Vector3DList([[length, 0, 0]]),
-            linkMasses=[solid.mass], gravity=[0, -case.model.gravity, 0],
-        )
-    )  # fmt: skip
-    kinds = ("Coordinates", "Coordinates_t") if recorded else ()
-    sensors = [_sensors(system, [node], kind)[0] for kind in kinds]
+    node = hinge(system, length, solid.mass, 0.0, case.model.gravity, solid.pose[2])
+    sensors = [sensor(system, node, kind) for kind in ("Coordinates", "Coordinates_t") if recorded]
     system.Assemble()
 
     def read() -> Record:

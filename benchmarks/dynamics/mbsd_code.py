@@ -1,4 +1,4 @@
-"""mbsd: the same plain data as a Mechanism, integrated by DOP853 in the coordinates that the program chooses."""
+"""mbsd: the same plain data as a Mechanism, by DOP853 in coordinates that the program chooses."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def ready(case: Case) -> PreparedDynamics:
 def started(
     prepared: PreparedDynamics, method: Integrator, tolerance: float, times: np.ndarray
 ) -> tuple[Callable[[], Any], Any]:
-    """Return a run from the start that is ready to be timed, and the outputs that it fills at ``times`` (s)."""
+    """Return a run from the start that is ready to be timed, and its outputs at ``times`` (s)."""
     duration = float(times[-1])
     state, out = prepared.begun(times)
     run = Run(prepared, method, tolerance, duration, duration, {})

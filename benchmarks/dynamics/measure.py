@@ -1,74 +1,77 @@
-"""Rows of the dynamics problems: every code at its stored settings, in turn, one process a run, several rounds.
-
-python -m benchmarks.dynamics.measure CODE CASE times one code on one problem. It prints seconds (the best of several
-runs), errors by name, and whether they are within the limits, as JSON.
-"""
+"""Rows of the dynamics problems at stored settings, bars beside peers, and growth with size."""
 
 from __future__ import annotations
 
 import importlib
-import json
-import sys
 
+import numpy as np
+
+import mbsd
 from benchmarks.dynamics import CODES
-from benchmarks.dynamics.cases import BESIDE_PEERS, case
+from benchmarks.dynamics.cases import ALONE, BESIDE_PEERS, case
+from benchmarks.dynamics.mbsd_code import ready, started
+from benchmarks.dynamics.n_four_bar import exact_angle
 from benchmarks.dynamics.settings import load, words
-from benchmarks.harness import best_of, bind_to_one_core, keep_quicker, printed_by
+from benchmarks.harness import Run, bar_of_peers, best_of, best_rows
 from benchmarks.rows import Bar, Row
-from shared.stage.console import say
+from mbsd.dynamics.simulate import integrator_named
 
+TOLERANCE = 1e-6
 ROUNDS = 3
-LONGEST = 1.0
-"""s: no new run is begun after this."""
-MOST_RUNS = 400
+SPREAD = 1.3
+"""Largest ratio of the dearest to the cheapest."""
 
 
-def measured() -> tuple[list[Row], list[Bar]]:
-    """Rows of all codes on all problems, the best of the rounds, and the bars."""
-    rows: list[Row] = []
-    bars: list[Bar] = []
-    chosen = load()
-    for name in BESIDE_PEERS:
-        best: dict[str, Row] = {}
-        for _ in range(ROUNDS):
-            for code in CODES:
-                if code in chosen.get(name, {}):
-                    keep_quicker(best, code, _once(code, name, words(chosen[name][code]["settings"])))
-        rows += best.values()
-        if "mbsd" in best:
-            bars.append(_bar(name, best))
-        say("bench", f"{name} done")
-    return rows, bars
-
-
-def _once(code: str, name: str, settings: str) -> Row:
-    record = printed_by("benchmarks.dynamics.measure", code, name, what=f"{code} on {name}")
-    errors = record["errors"]
-    error = errors[list(case(name).limits)[-1]]
-    return Row(name, code, record["version"], settings, record["seconds"], error, errors, record["met"])
-
-
-def _bar(name: str, best: dict[str, Row]) -> Bar:
-    """Against the quickest peer that keeps the limits."""
-    ours, wanted = best["mbsd"], case(name).bar
-    peers = [row for code, row in best.items() if code != "mbsd" and row.within_limits]
-    if not peers:
-        return Bar(name, wanted, 0.0, "no peer was swept yet, or none keeps the limits", "", met=False)
-    peer = min(peers, key=lambda row: row.seconds)
-    ratio = peer.seconds / ours.seconds
-    return Bar(name, wanted, ratio, peer.code, peer.settings, ours.within_limits and ratio >= wanted)
-
-
-def main(code: str, name: str) -> None:
-    """Print the result of one code on one problem at its stored settings."""
-    bind_to_one_core()
+def prepared(code: str, name: str) -> Run:
+    """Return the run of one code at its stored settings; errors are of a record of its own."""
     module = importlib.import_module(f"benchmarks.dynamics.{code}_code")
     problem, settings = case(name), load()[name][code]["settings"]
     fresh, record = module.prepare(problem, settings)
-    errors = problem.errors(record())  # compiles and warms the cache too
-    seconds, _ = best_of(fresh, MOST_RUNS, LONGEST)
-    print(json.dumps({"version": module.VERSION, "seconds": seconds, "errors": errors, "met": problem.met(errors)}))
+    return Run(module.VERSION, words(settings), fresh, lambda _: problem.errors(record()), problem.limits)
 
 
-if __name__ == "__main__":
-    main(*sys.argv[1:])
+def measured() -> tuple[list[Row], list[Bar]]:
+    """Return rows of all codes on all problems, the best of the rounds, and the bars."""
+    chosen = load()
+    codes = {name: [code for code in CODES if code in chosen.get(name, {})] for name in BESIDE_PEERS}
+    rows = {name: list(best.values()) for name, best in best_rows(__name__, codes).items()}
+    bars = [bar_of_peers(rows[name], case(name).bar) for name in rows if "mbsd" in codes[name]]
+    return [row for of_problem in rows.values() for row in of_problem], bars
+
+
+def scaling() -> tuple[list[Row], list[Bar]]:
+    """Return rows of A02 by mbsd at 40, 400 and 4000 loops, and the bar of the cost of a body."""
+    method = integrator_named("A02", "dop853")
+    cases = [case(name) for name in ALONE]
+    prepared = [ready(chain) for chain in cases]
+    best, angles = [float("inf")] * len(cases), [0.0] * len(cases)
+    for repeat in range(1 + ROUNDS):
+        for k, (chain, system) in enumerate(zip(cases, prepared, strict=True)):
+            to_end, out = started(system, method, TOLERANCE, np.array([0.0, chain.duration]))
+            seconds, _ = best_of(lambda to_end=to_end: to_end, 1)
+            if repeat > 0:  # the first one compiles
+                best[k] = min(best[k], seconds)
+            loops = len(chain.model.solids) // 2
+            vertical = out.y[-1].reshape(2, -1, 3)[0, 1::2, 2]
+            angles[k] = float(np.abs(vertical - exact_angle(loops)).max())
+    rows, costs = [], []
+    for chain, seconds, angle in zip(cases, best, angles, strict=True):
+        costs.append(seconds / len(chain.model.solids) / chain.duration)
+        words = f"dop853, tolerance {TOLERANCE:g}; {costs[-1] * 1e6:.2f} us per body and second"
+        right = angle <= chain.limits["angle (rad)"]
+        rows.append(
+            Row(f"{chain.name}, alone", "mbsd", mbsd.__version__, words, seconds, angle, {"angle (rad)": angle}, right)
+        )
+    spread = max(costs) / min(costs)
+    met = spread <= SPREAD and all(row.within_limits for row in rows)
+    return rows, [
+        Bar(
+            "A02 N=40 to 4000, cost of a body",
+            SPREAD,
+            spread,
+            "",
+            ", ".join(f"{cost * 1e6:.2f}" for cost in costs) + " us per body and second",
+            met,
+            most=True,
+        )
+    ]

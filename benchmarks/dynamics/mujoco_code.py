@@ -1,4 +1,4 @@
-"""MuJoCo: hinges along a tree of bodies, its "connect" equality where a loop closes (a soft constraint by design).
+"""MuJoCo: hinges along a tree, its soft "connect" equality where a loop closes.
 
 A loop is held by a reference acceleration with time constant ``softness`` steps and critical damping, its impedance at
 the most that MuJoCo allows (0.9999). Below 2 steps MuJoCo needs an option not to soften it (refsafe off).

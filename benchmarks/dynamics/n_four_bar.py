@@ -1,4 +1,6 @@
-"""A02, the N-four-bar of the IFToMM benchmark library: N loops of rods, 1 m and 1 kg each, that swing through y = 0.
+"""A02, the N-four-bar of the IFToMM benchmark library: N loops of rods, 1 m and 1 kg each.
+
+They swing through y = 0.
 
 N + 1 vertical rods stand on pins one metre apart, N couplers join their tops; the tops start at 1 m/s. Whenever all
 rods lie in one line each loop could leave its parallelogram, so energy alone may look right on a wrong branch. Errors:
@@ -34,7 +36,10 @@ def name(loops: int) -> str:
 
 
 def model(loops: int) -> Pinned:
-    """Bodies in turn: vertical rod 0, coupler 0, vertical rod 1, ...; each rod's frame at its middle, x along it."""
+    """Return bodies in turn: vertical rod 0, coupler 0, vertical rod 1, ...
+
+    Each rod's frame is at its middle, x along it.
+    """
     solids: list[Solid] = []
     pins: list[Pin] = []
     start, end = (-LENGTH / 2, 0.0), (LENGTH / 2, 0.0)

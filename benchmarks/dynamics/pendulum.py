@@ -1,4 +1,6 @@
-"""A01, the simple pendulum of the IFToMM benchmark library: 1 kg on a massless rod of 1 m, from rest in the horizontal.
+"""A01, the simple pendulum of the IFToMM benchmark library: 1 kg on a massless rod of 1 m.
+
+It starts from rest in the horizontal.
 
 Error: largest drift of the energy over 10 s (J); the library accepts 5e-5 J. Energy 0 is that of the start.
 """

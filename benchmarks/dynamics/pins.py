@@ -1,4 +1,7 @@
-"""A planar mechanism of pins as plain data, the same for every code; body frames at the centres of mass. SI units."""
+"""A planar mechanism of pins as plain data, the same for every code.
+
+Body frames are at the centres of mass. SI units.
+"""
 
 from __future__ import annotations
 
@@ -77,7 +80,10 @@ def energy(model: Pinned, poses: np.ndarray, velocities: np.ndarray) -> np.ndarr
 
 
 def energy_drift(model: Pinned, record: Record) -> float:
-    """Largest difference of the energy from that of the exact start, J; infinite if the record holds no numbers."""
+    """Return the largest difference of the energy from that of the exact start (J).
+
+    It is infinite if the record holds no numbers.
+    """
     drift = np.abs(energy(model, record.poses, record.velocities) - energy(model, *model.start))
     worst = float(drift.max())
     return worst if np.isfinite(worst) else float("inf")
@@ -97,7 +103,7 @@ def _place(model: Pinned, body: int, point: Point) -> np.ndarray:
 
 
 def spanning_tree(model: Pinned) -> tuple[dict[int, tuple[int, Pin]], list[Pin]]:
-    """Return the parent of each body and the pin between them, parents first; and the pins that close loops."""
+    """Return the parent and pin of each body, parents first, and the pins that close loops."""
     parents: dict[int, tuple[int, Pin]] = {}
     waiting = list(model.pins)
     reached = [GROUND]

@@ -1,4 +1,7 @@
-"""scipy by hand: index-1 equations in numpy with projection; for the pendulum the one equation of its angle as well."""
+"""scipy by hand: index-1 equations in numpy with projection.
+
+The pendulum also as the one equation of its angle.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +54,7 @@ def ladders(case: Case) -> Iterator[list[dict[str, Any]]]:
 
 
 def prepare(case: Case, settings: dict[str, Any]) -> tuple[Callable[[], Callable[[], Any]], Callable[[], Record]]:
-    """``fresh`` gives a run that starts anew, whose making is not timed; ``record`` what it computes, step by step."""
+    """Return ``fresh``, which makes a run ready to be timed, and ``record``, its motion step by step."""
     method = settings["method"]
     if settings["model"] == "angle":
         start, rates, unpack = angle(case)

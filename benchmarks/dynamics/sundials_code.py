@@ -1,4 +1,4 @@
-"""SUNDIALS through scikit-sundae: IDA on M v' + J^T lam = Q, and CVODE on the same equations solved for v'.
+"""SUNDIALS through scikit-sundae: IDA on M v' + J^T lam = Q, CVODE on the same solved for v'.
 
 IDA holds the constraint as acceleration (index 1), or as velocity with positions pulled onto theirs (index 2 of Gear,
 Gupta and Leimkuhler), or as acceleration with Baumgarte's feedback; its Newton matrix is written out by hand. CVODE may

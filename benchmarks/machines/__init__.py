@@ -10,7 +10,8 @@ import math
 
 import numpy as np
 
-from benchmarks.four_bar import exact as four_bar
+from benchmarks.calls import exact as four_bar
+from benchmarks.calls import worst as worst
 
 STEPS = 1000
 PLANETARY, GENEVA, CAM, CONTACT = (
@@ -21,7 +22,9 @@ PLANETARY, GENEVA, CAM, CONTACT = (
 )
 PROBLEMS = (PLANETARY, GENEVA, CAM, CONTACT)
 CODES = ("mbsd", "exudyn", "mujoco")
-BARS = dict.fromkeys(PROBLEMS, 10.0)
+WATCHED = {PLANETARY: ("coupler", "rocker"), GENEVA: ("wheel",), CAM: ("arm",)}
+"""Bodies whose angles count."""
+BAR = 10.0
 """How many times the time of mbsd the quickest peer takes at least."""
 LIMITS = {PLANETARY: 1e-5, GENEVA: 1e-5, CAM: 1e-5, CONTACT: 1e-4}
 """Limits of the error; wide enough that MuJoCo's soft loops are peers."""
@@ -56,11 +59,6 @@ def exact(problem: str, phi: np.ndarray) -> np.ndarray:
     reach = np.hypot(x, y)
     bend = np.arccos((reach**2 + ARM**2 - DISC**2) / (2 * reach * ARM))
     return (np.arctan2(y, x) - bend)[:, None]
-
-
-def worst(values: np.ndarray, wanted: np.ndarray) -> float:
-    """Largest difference of angles, whole turns aside."""
-    return float(np.abs(np.angle(np.exp(1j * (values - wanted)))).max())
 
 
 def height(time: float) -> float:

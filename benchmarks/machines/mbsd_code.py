@@ -1,4 +1,4 @@
-"""mbsd: the machines as a user writes them; sweeps give positions, velocities and accelerations of all bodies."""
+"""mbsd: the machines as a user writes them; sweeps give all velocities and accelerations, too."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import mbsd
-from benchmarks import four_bar, machines
+from benchmarks import calls, machines
 from benchmarks.dynamics.mbsd_code import started
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.simulate import integrator_named
@@ -28,8 +28,8 @@ def settings(problem: str) -> str:
 def planetary() -> mbsd.Mechanism:
     """One planet, which the sun and a ring of ground turn."""
     m = mbsd.Mechanism("planetary")
-    sun, planet, carrier = m.body("sun"), m.body("planet"), m.bar("carrier", four_bar.CRANK)
-    coupler, rocker = m.bar("coupler", four_bar.COUPLER), m.bar("rocker", four_bar.ROCKER)
+    sun, planet, carrier = m.body("sun"), m.body("planet"), m.bar("carrier", calls.CRANK)
+    coupler, rocker = m.bar("coupler", calls.COUPLER), m.bar("rocker", calls.ROCKER)
     m.revolute("S", m.ground.at(0, 0), sun.origin)
     m.revolute("A", m.ground.at(0, 0), carrier.start)
     m.revolute("P", carrier.end, planet.origin)
@@ -38,9 +38,9 @@ def planetary() -> mbsd.Mechanism:
     m.gear_pair("ring", m.ground.at(0, 0), planet.origin, radius_i=outer, radius_j=machines.PLANET, internal=True)
     m.revolute("B", carrier.end, coupler.start)
     m.revolute("C", coupler.end, rocker.end)
-    m.revolute("D", m.ground.at(four_bar.GROUND, 0), rocker.start)
+    m.revolute("D", m.ground.at(calls.GROUND, 0), rocker.start)
     m.drive_angle("motor", sun, mbsd.constant_rate(1.0))
-    theta, swing = (math.degrees(x[0]) for x in four_bar.exact(np.zeros(1)))
+    theta, swing = (math.degrees(x) for x in calls.START)
     m.start_near(sun=0, planet=0, carrier=0, coupler=theta, rocker=swing)
     return m
 
@@ -75,15 +75,14 @@ def cam() -> mbsd.Mechanism:
 def ball() -> mbsd.Mechanism:
     """Held upright, so that its height is all that is left to find."""
     m = mbsd.Mechanism("ball", gravity=(0.0, -machines.GRAVITY))
-    made = m.body("ball", 1.0, inertia=1.0)
-    m.prismatic("guide", m.ground.at(0, 0, math.pi / 2), made.at(0, 0, math.pi / 2))
-    m.contact("floor", m.ground.origin, made.origin, machines.STIFFNESS, exponent=1.0)
+    disc = m.body("ball", 1.0, inertia=1.0)
+    m.prismatic("guide", m.ground.at(0, 0, math.pi / 2), disc.at(0, 0, math.pi / 2))
+    m.contact("floor", m.ground.origin, disc.origin, machines.STIFFNESS, exponent=1.0)
     m.start_near(ball=(0.0, machines.HEIGHT, 0.0))
     return m
 
 
 SWEEPS = {machines.PLANETARY: planetary, machines.GENEVA: geneva, machines.CAM: cam}
-WATCHED = {machines.PLANETARY: ("coupler", "rocker"), machines.GENEVA: ("wheel",), machines.CAM: ("arm",)}
 
 
 def prepare(problem: str) -> tuple[Callable[[], Callable[[], Any]], Callable[[Any], float]]:
@@ -92,7 +91,7 @@ def prepare(problem: str) -> tuple[Callable[[], Callable[[], Any]], Callable[[An
         return _falling()
     times = machines.angles(problem)
     ready = prepared(SWEEPS[problem](), float(times[0]), float(times[-1]))
-    names = [ready.packed.body_names.index(name) for name in WATCHED[problem]]
+    names = [ready.packed.body_names.index(name) for name in machines.WATCHED[problem]]
 
     def error(result: tuple[np.ndarray, ...]) -> float:
         return machines.worst(result[0][:, names, 2], machines.exact(problem, times))

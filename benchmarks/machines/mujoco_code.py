@@ -13,7 +13,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from benchmarks import four_bar, machines
+from benchmarks import calls, machines
 
 VERSION = mujoco.__version__
 CONTACT_STEPS = 100_000
@@ -41,11 +41,11 @@ def _soft() -> str:
 
 
 def _planetary() -> tuple[str, str, str]:
-    theta = float(four_bar.exact(np.zeros(1))[0][0])
-    inner = _body("planet", four_bar.CRANK, 0.0) + _body("coupler", four_bar.CRANK, 0.0)
+    theta = calls.START[0]
+    inner = _body("planet", calls.CRANK, 0.0) + _body("coupler", calls.CRANK, 0.0)
     bodies = _body("sun", 0.0, 0.0, inertia=HEAVY) + _body("carrier", 0.0, 0.0, inner)
-    bodies += _body("rocker", four_bar.GROUND, 0.0)
-    x, y = four_bar.COUPLER * math.cos(theta), four_bar.COUPLER * math.sin(theta)
+    bodies += _body("rocker", calls.GROUND, 0.0)
+    x, y = calls.COUPLER * math.cos(theta), calls.COUPLER * math.sin(theta)
     planet = -machines.SUN / machines.PLANET * (1 - machines.RATIO)
     equal = f'<connect body1="coupler" body2="rocker" anchor="{x!r} {y!r} 0" SOFT/>'
     for name, factor in (("carrier", machines.RATIO), ("planet", planet)):

@@ -1,4 +1,7 @@
-"""Many simulations: the door closer of docs/study.md with n closers; error: worst angle at the end (rad)."""
+"""Many simulations: the door closer of docs/study.md with n closers.
+
+Error: the worst angle at the end (rad).
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rows of many simulations: in turns, processor time and wall time of a door, on one thread and on two."""
+"""Rows of many simulations, in turns: processor and wall time of a door, on one and two threads."""
 
 from __future__ import annotations
 

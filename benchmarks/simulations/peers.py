@@ -1,4 +1,4 @@
-"""The doors by others, each by its own way to many: MuJoCo's rollout, Exudyn's ParameterVariation; scipy one by one."""
+"""The doors by MuJoCo's rollout, Exudyn's ParameterVariation, and scipy one by one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Single runs with events at equal error: a ball that comes to rest, a block on a belt, one at a stop, a cradle.
+"""Single runs with events at equal error: a ball, a block on a belt, one at a stop, a cradle.
 
 All are known in closed form; error: the largest of a coordinate at 100 outputs (m). mbsd's time is that of a whole call
 on a model that it knows, with these outputs; the peers keep nothing. They press back where mbsd has impacts: a row for
@@ -19,10 +19,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import mbsd
-from benchmarks.harness import best_of
+from benchmarks.harness import Run, bar_of_peers, row_of
 from benchmarks.rows import Bar, Row
 
-OUTPUTS, RUNS, LONGEST = 100, 200, 1.0
+OUTPUTS = 100
 BAR = 1.0
 """How many times the time of mbsd the quickest peer takes at least."""
 GRAVITY, BALL_LOSS, HEIGHT = 10.0, 0.5, 1.0
@@ -170,7 +170,7 @@ TRIED = {
 FITTED = {("mujoco", BALL): 0.958, ("mujoco", STOP): 1.019, ("exudyn", STOP): 1.15}
 """Parts of the damping of smooth contacts at which so many steps give back the speed; found by trial."""
 
-Run = Callable[[], Any]
+Call = Callable[[], Any]
 
 
 class Case(NamedTuple):
@@ -178,7 +178,7 @@ class Case(NamedTuple):
 
     code: str
     settings: str
-    fresh: Callable[[], Run]
+    fresh: Callable[[], Call]
     """A run, whose making is not timed."""
     outputs: Callable[[np.ndarray], np.ndarray]
     """(T, k) coordinates at times, in a run of its own."""
@@ -200,7 +200,10 @@ def own(problem: Problem) -> Iterator[Case]:
 
 
 def damping(code: str, problem: Problem, pulls: bool) -> float:
-    """Part of the critical damping with which a contact gives back a speed; ``pulls`` where it holds on at its end."""
+    """Return the part of the critical damping with which a contact gives back a speed.
+
+    ``pulls`` where it holds on at its end.
+    """
     restitution = {BALL: BALL_LOSS, STOP: STOP_LOSS}.get(problem.name, 1.0)
     least, most = 0.0, 0.999999
     for _ in range(60):
@@ -255,12 +258,12 @@ def mujoco(problem: Problem) -> Iterator[Case]:
             data.qvel[0] = moving
             module.mj_forward(model, data)
 
-        def fresh(model: Any = model, data: Any = data, steps: int = steps, reset: Run = reset) -> Run:
+        def fresh(model: Any = model, data: Any = data, steps: int = steps, reset: Call = reset) -> Call:
             reset()
             return lambda: module.mj_step(model, data, steps)
 
         def outputs(
-            times: np.ndarray, model: Any = model, data: Any = data, steps: int = steps, reset: Run = reset
+            times: np.ndarray, model: Any = model, data: Any = data, steps: int = steps, reset: Call = reset
         ) -> np.ndarray:
             reset()
             out = [data.qpos.copy()]
@@ -297,10 +300,7 @@ def _exudyn_system(exu: Any, u: Any, problem: Problem, stiffness: float) -> tupl
     def rub(other: Any, sliding: float, **more: Any) -> None:
         data = u.NodeGenericData(initialCoordinates=[0, 0, 0], numberOfDataCoordinates=3)
         friction = u.CoordinateSpringDamperExt(
-            markerNumbers=[other, markers[0]],
-            nodeNumber=system.AddNode(data),
-            dynamicFrictionForce=sliding,
-            **more,
+            markerNumbers=[other, markers[0]], nodeNumber=system.AddNode(data), dynamicFrictionForce=sliding, **more
         )
         system.AddObject(friction)
 
@@ -345,7 +345,7 @@ def exudyn(problem: Problem) -> Iterator[Case]:
 
         build_system = partial(_exudyn_system, exu, u, problem, stiffness)
 
-        def fresh(settings: Any = settings, build: Callable[[], Any] = build_system) -> Run:
+        def fresh(settings: Any = settings, build: Callable[[], Any] = build_system) -> Call:
             system, _ = build()
             settings.solution.sensors.writePeriod = 1e9
             system.Assemble()
@@ -367,7 +367,7 @@ CODES = {"mbsd": own, "exudyn": exudyn, "mujoco": mujoco}
 
 
 def measured() -> tuple[list[Row], list[Bar]]:
-    """Return rows of all codes that are installed, and a bar for each problem that a peer solves within the limit."""
+    """Return rows of all codes installed, and a bar where a peer keeps the limit."""
     rows: list[Row] = []
     bars: list[Bar] = []
     for problem in PROBLEMS:
@@ -378,19 +378,11 @@ def measured() -> tuple[list[Row], list[Bar]]:
             if importlib.util.find_spec(code) is None:
                 continue
             for case in cases(problem) if code == "mbsd" or (code, problem.name) in TRIED else ():
-                error = float(np.abs(case.outputs(times) - exact).max())
-                seconds, _ = best_of(case.fresh, RUNS, LONGEST)
                 version = importlib.metadata.version(code) if code != "mbsd" else mbsd.__version__
-                own_rows.append(
-                    Row(
-                        problem.name, code, version, case.settings, seconds, error, within_limits=error <= problem.limit
-                    )
-                )
+                error = float(np.abs(case.outputs(times) - exact).max())
+                run = Run(version, case.settings, case.fresh, lambda _, error=error: {"": error}, {"": problem.limit})
+                own_rows.append(row_of(code, problem.name, run))
         rows += own_rows
-        ours = own_rows[0]
-        peers = [row for row in own_rows[1:] if row.within_limits]
-        if peers:
-            peer = min(peers, key=lambda row: row.seconds)
-            ratio = peer.seconds / ours.seconds
-            bars.append(Bar(problem.name, BAR, ratio, peer.code, peer.settings, ours.within_limits and ratio >= BAR))
+        if any(row.within_limits for row in own_rows[1:]):
+            bars.append(bar_of_peers(own_rows, BAR))
     return rows, bars

@@ -1,4 +1,4 @@
-"""A four-bar under a motor's curve that strikes a stop and comes to rest there: in a study, in many, alone."""
+"""A four-bar under a motor's curve that comes to rest at a stop: in a study, in many, alone."""
 
 from __future__ import annotations
 
@@ -26,7 +26,10 @@ def build(damping: float) -> mbsd.Mechanism:
 
 
 def study(values: np.ndarray, outputs: int) -> np.ndarray:
-    """(n, 3) angle at the end, largest force, fastest rebound, each built, simulated and measured by Python."""
+    """Return (n, 3) angle at the end, largest force, fastest rebound.
+
+    Each is built, simulated and measured by Python.
+    """
 
     def measure(m: mbsd.Mechanism) -> dict[str, float]:
         sol = m.simulate(DURATION, steps=outputs)
@@ -55,7 +58,10 @@ def many(values: np.ndarray, outputs: int) -> np.ndarray:
 
 
 def measured() -> tuple[list[Row], list[Bar]]:
-    """Return rows with few and many outputs, and their bars; error: largest difference from the study's numbers."""
+    """Return rows with few and many outputs, and their bars.
+
+    Error: the largest difference from the study's numbers.
+    """
     values = np.linspace(0.1, 0.8, LOT)
     some = values[:: LOT // FEW]
     rows, bars = [], []

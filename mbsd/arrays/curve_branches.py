@@ -13,22 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mbsd.equations.assembly import tabulate
-from mbsd.equations.relative.curve_pieces import (
-    CLOSED,
-    COUNT,
-    CX,
-    CY,
-    DISTANCE,
-    DX,
-    DY,
-    END_DY,
-    END_X,
-    FARTHEST,
-    SPAN,
-    TABLE,
-    WIDTH,
-    foot,
-)
+from mbsd.equations.relative import curve_pieces as pieces
 from mbsd.equations.relative.equation import AT, MARKER_I, MARKER_J
 from mbsd.equations.system import LAST
 
@@ -60,7 +45,7 @@ class CurveBranches:
         self.rows: list[CurveRow] = []
         for k, name in enumerate(packed.specials.names):
             i, j, at = (int(system.special[k, column]) for column in (MARKER_I, MARKER_J, AT))
-            if name in CURVES and system.numbers[at + FARTHEST] > 0.0:
+            if name in CURVES and system.numbers[at + pieces.FARTHEST] > 0.0:
                 self.rows.append(CurveRow(i, j, system.numbers[at:].copy(), packed.ws.relative[k]))
 
     def __bool__(self) -> bool:
@@ -72,11 +57,11 @@ class CurveBranches:
             numbers, own = row.numbers, row.own
             own[LAST] = math.nan
             x, y, vx, vy = self._relative(q, v, row.i, row.j)
-            best = foot(numbers, x, y, own)
+            best = pieces.foot(numbers, x, y, own)
             least = self._across(row, x, y, vx, vy)
             for begun in self._begun(numbers, x, y):
                 own[LAST] = begun
-                u = foot(numbers, x, y, own)
+                u = pieces.foot(numbers, x, y, own)
                 across = self._across(row, x, y, vx, vy)
                 if across < least:
                     best, least = u, across
@@ -85,19 +70,19 @@ class CurveBranches:
     @staticmethod
     def _begun(numbers: np.ndarray, x: float, y: float) -> list[float]:
         """Return parameters from which the branches near (x, y) are searched, also of continuations."""
-        end = TABLE + WIDTH * int(numbers[COUNT])
-        nodes = numbers[TABLE:end].reshape(-1, WIDTH)
+        end = pieces.TABLE + pieces.WIDTH * int(numbers[pieces.COUNT])
+        nodes = numbers[pieces.TABLE : end].reshape(-1, pieces.WIDTH)
         square = (nodes[:, 1] - x) ** 2 + (nodes[:, 7] - y) ** 2
-        around = np.pad(square, 1, "wrap") if numbers[CLOSED] else np.pad(square, 1, constant_values=math.inf)
+        around = np.pad(square, 1, "wrap") if numbers[pieces.CLOSED] else np.pad(square, 1, constant_values=math.inf)
         out = nodes[(square <= around[:-2]) & (square <= around[2:]), 0].tolist()
-        if not numbers[CLOSED]:
+        if not numbers[pieces.CLOSED]:
             begins, ends = (
-                numbers[[TABLE + 1, TABLE + 7, TABLE + 2, TABLE + 8]],
-                numbers[end + END_X : end + END_DY + 1],
+                numbers[[pieces.TABLE + 1, pieces.TABLE + 7, pieces.TABLE + 2, pieces.TABLE + 8]],
+                numbers[end + pieces.END_X : end + pieces.END_DY + 1],
             )
             for u, (cx, cy, dx, dy), sign in (
-                (numbers[TABLE], begins, -1.0),
-                (numbers[TABLE] + numbers[SPAN], ends, 1.0),
+                (numbers[pieces.TABLE], begins, -1.0),
+                (numbers[pieces.TABLE] + numbers[pieces.SPAN], ends, 1.0),
             ):
                 beyond = ((x - cx) * dx + (y - cy) * dy) / (dx * dx + dy * dy)
                 if sign * beyond > 0.0:
@@ -107,9 +92,9 @@ class CurveBranches:
     def _across(self, row: CurveRow, x: float, y: float, vx: float, vy: float) -> float:
         """Return speed across the curve at the foot in the scratch; infinite where the point is not on it."""
         at = row.own
-        speed = math.hypot(at[DX], at[DY])
-        tx, ty = at[DX] / speed, at[DY] / speed
-        off = tx * (y - at[CY]) - ty * (x - at[CX]) - row.numbers[DISTANCE]
+        speed = math.hypot(at[pieces.DX], at[pieces.DY])
+        tx, ty = at[pieces.DX] / speed, at[pieces.DY] / speed
+        off = tx * (y - at[pieces.CY]) - ty * (x - at[pieces.CX]) - row.numbers[pieces.DISTANCE]
         return abs(tx * vy - ty * vx) if abs(off) < NEAR * self.packed.size else math.inf
 
     def moved(self, q: np.ndarray) -> tuple[list[float], float]:
@@ -117,11 +102,11 @@ class CurveBranches:
         feet, farthest = [], 0.0
         for i, j, numbers, own in self.rows:
             x, y, _, _ = self._relative(q, np.zeros_like(q), i, j)
-            feet.append(foot(numbers, x, y, own))
+            feet.append(pieces.foot(numbers, x, y, own))
             way = abs(feet[-1] - own[LAST])
-            if numbers[CLOSED]:
-                way = min(way, abs(numbers[SPAN] - way))
-            farthest = max(farthest, way / numbers[FARTHEST])
+            if numbers[pieces.CLOSED]:
+                way = min(way, abs(numbers[pieces.SPAN] - way))
+            farthest = max(farthest, way / numbers[pieces.FARTHEST])
         return feet, farthest
 
     def accept(self, feet: list[float]) -> None:

@@ -23,13 +23,9 @@ from mbsd.base.quantity import written
 from mbsd.equations.laws import Laws, tabulate_law
 from mbsd.model.laws import Motion
 from mbsd.model.laws.fitting.leaves import finest
-from mbsd.model.laws.numbers import (
-    ZERO,
-    Compiled,
-)
+from mbsd.model.laws.numbers import ZERO, Compiled
 
 if TYPE_CHECKING:
-    from mbsd.arrays.packing import Packed
     from mbsd.model.force import Force
 
 

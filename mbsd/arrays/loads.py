@@ -27,9 +27,7 @@ from mbsd.equations.laws import Laws
 from mbsd.equations.loads import Loads, remembers, stretches, tabulate_loads
 
 if TYPE_CHECKING:
-    from mbsd.arrays.directory import ForceRows
     from mbsd.arrays.packing import Packed
-    from mbsd.equations.laws import Laws
     from mbsd.model.force import Force
 
 

@@ -49,6 +49,8 @@ class Canvas:
     """Pins that have ground's sign already."""
     wheels: dict[tuple[str, float], tuple[int, float]] = field(default_factory=dict)
     """Teeth and phase (rad) of the gears drawn, by body and radius."""
+    pulleys: set[tuple[str, float, float, float]] = field(default_factory=set)
+    """Wheels of cables that are drawn, by body, centre and radius (m)."""
     turned: dict[tuple[str, float], tuple[int, float]] = field(default_factory=dict)
     """The same of gears that will be drawn, in a motion: as their teeth stood at its start."""
     coils: dict[str, int] = field(default_factory=dict)

@@ -41,6 +41,7 @@ from mbsd.dynamics.runs.steps import step_to
 from mbsd.dynamics.state import ACCEPTED, NEXT, TIME, WORK, Output, State
 from mbsd.dynamics.switches import standing
 from mbsd.equations.products import leave
+from mbsd.kinematics.limits.cables import refuse_left_wheels
 from mbsd.kinematics.limits.joints import refuse_passed
 from mbsd.kinematics.multipliers import JACOBIAN_NUMBERS
 from mbsd.model.event import Event
@@ -176,12 +177,7 @@ class Between:
 
 
 def with_phase_changes(
-    ready: PreparedDynamics,
-    run: Run,
-    recording: Recording,
-    events: list[Event],
-    grid: np.ndarray,
-    asked: Asked | None,
+    ready: PreparedDynamics, run: Run, recording: Recording, events: list[Event], grid: np.ndarray, asked: Asked | None
 ) -> tuple[Recording, Asked | None]:
     """The recording with rows beside each change of phase, and what was asked for with them.
 
@@ -306,9 +302,10 @@ def warn_of_start(ready: PreparedDynamics) -> None:
 
 
 def refuse_impossible(packed: Packed, t: np.ndarray, y: np.ndarray) -> None:
-    """Raise an error where y (T, 2, 3 nb) at t (T,) (s) passes limits of joints or cylinders, or a state its bounds."""
+    """Raise an error where y (T, 2, 3 nb) at t (T,) (s) passes limits of joints, cables, cylinders or states."""
     poses = np.ascontiguousarray(y[:, 0])
     refuse_passed(packed, t, poses)
+    refuse_left_wheels(packed, t, poses)
     check_pistons(packed, t, poses)
     check_states(packed, t, poses, states_of(packed, y[:, 1]))
 

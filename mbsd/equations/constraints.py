@@ -31,7 +31,7 @@ Distance constraint: markers i and j stay a fixed or driven distance apart (a ma
     J     = [u, u . s_perp_j] on body j;  -[u, u . s_perp_i] on body i
     gamma = -( u . (c_j - c_i) + (|d'|^2 - (u . d')^2) / l ) + f''
 
-The multiplier is the rod's push: positive where the rod is in compression. l = 0 has no direction; the
+The multiplier is the rod's pull: negative where the rod is in compression. l = 0 has no direction; the
 model refuses a rod of zero length.
 """
 

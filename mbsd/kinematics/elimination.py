@@ -83,10 +83,13 @@ class Factors(NamedTuple):
     """(d,) of each diagonal block of the dense block, up to a constant factor."""
 
 
-def plan(samples: np.ndarray, kept_rows: np.ndarray, row_body: np.ndarray) -> tuple[Elimination, Factors]:
+def plan(
+    samples: np.ndarray, kept_rows: np.ndarray, row_body: np.ndarray, width: int = 3
+) -> tuple[Elimination, Factors]:
     """Find the sequence from Jacobians (s, m, n) at s unrelated poses; equal entries are constant.
 
-    ``row_body`` (m, 2): the bodies of each row, to find an entry in the compact J (m, 6).
+    ``row_body`` (m, k): the bodies of each row, to find an entry in the compact J (m, k width), where a body has
+    ``width`` velocities: 3 in the plane, 6 in space.
     """
     rows, bodies = np.asarray(kept_rows, np.int64), np.asarray(row_body, np.int64)
 
@@ -95,12 +98,14 @@ def plan(samples: np.ndarray, kept_rows: np.ndarray, row_body: np.ndarray) -> tu
         own = np.any(matrices != 0.0, axis=0)
         constant = own & np.all(matrices == matrices[0], axis=0)
         value = np.where(constant, matrices[0], 0.0)
-        return _planned(own.tobytes(), constant.tobytes(), value.tobytes(), rows.tobytes(), bodies.tobytes())
+        return _planned(
+            own.tobytes(), constant.tobytes(), value.tobytes(), rows.tobytes(), bodies.tobytes(), bodies.shape, width
+        )
 
     if samples.size > MOST_SAMPLED:
         kept, values = found()
     else:
-        kept, values = _PLANS.get((samples.tobytes(), rows.tobytes(), bodies.tobytes()), found)
+        kept, values = _PLANS.get((samples.tobytes(), rows.tobytes(), bodies.tobytes(), bodies.shape, width), found)
     sequence = Elimination(*(array.copy() for array in kept))
     n, size = len(sequence.rows), len(sequence.block)
     return sequence, Factors(
@@ -119,13 +124,17 @@ _PLANS: Kept[tuple[Elimination, np.ndarray]] = Kept()
 
 @lru_cache(maxsize=64)
 def _planned(
-    own_bytes: bytes, constant_bytes: bytes, value_bytes: bytes, rows_bytes: bytes, bodies_bytes: bytes
-) -> tuple[Elimination, np.ndarray]:
+    own_bytes: bytes, constant_bytes: bytes, value_bytes: bytes, rows_bytes: bytes, bodies_bytes: bytes,
+    bodies_shape: tuple[int, ...], width: int,
+) -> tuple[Elimination, np.ndarray]:  # fmt: skip
     """Return the sequence and values of its constants, from J's pattern and constant entries alone.
 
     They are kept for the next call, so nobody writes into them.
     """
-    kept_rows, row_body = np.frombuffer(rows_bytes, np.int64), np.frombuffer(bodies_bytes, np.int64).reshape(-1, 2)
+    kept_rows, row_body = (
+        np.frombuffer(rows_bytes, np.int64),
+        np.frombuffer(bodies_bytes, np.int64).reshape(bodies_shape),
+    )
     n = len(kept_rows)
     own, constant = (np.frombuffer(part, bool).reshape(n, n) for part in (own_bytes, constant_bytes))
     value, constant = np.frombuffer(value_bytes).reshape(n, n).copy(), constant.copy()
@@ -170,7 +179,8 @@ def _planned(
             values[k] = fixed_value[r, c] * scale_of[r]
         elif own[r, c]:
             row = int(kept_rows[r])
-            read.append((k, row, c % 3 + (0 if row_body[row, 0] == c // 3 + 1 else 3)))
+            side = int(np.flatnonzero(row_body[row] == c // width + 1)[0])
+            read.append((k, row, c % width + width * side))
             read_scale.append(scale_of[r])
         else:
             cleared.append(k)
@@ -353,12 +363,12 @@ def multipliers_along(seq, fac, compact, loads, lam):
     for k in range(loads.shape[0]):
         if factorise(seq, compact[k], fac) == 0.0:
             return k
-        _solve_transposed(seq, fac, loads[k], lam[k])
+        solve_transposed(seq, fac, loads[k], lam[k])
     return ALL_SOLVED
 
 
 @inlined
-def _solve_transposed(seq, fac, load, lam):
+def solve_transposed(seq, fac, load, lam):
     """Solve J^T lam = load; load (3 nb,) by coordinate, lam (m,) by row of J."""
     w, block, mixed, y = fac.values, fac.block, fac.mixed, fac.side
     n, size = seq.rows.shape[0], block.shape[0]

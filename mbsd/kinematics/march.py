@@ -34,13 +34,7 @@ class March:
     """A motion at the times asked for, and at all steps on the way."""
 
     def __init__(
-        self,
-        q: np.ndarray,
-        v: np.ndarray,
-        a: np.ndarray,
-        steps: Steps,
-        closed: bool,
-        passages: Sequence[Passage] = (),
+        self, q: np.ndarray, v: np.ndarray, a: np.ndarray, steps: Steps, closed: bool, passages: Sequence[Passage] = ()
     ) -> None:
         self.steps, self.closed = steps, closed
         """``closed``: solved in closed form."""

@@ -17,6 +17,7 @@ from mbsd.base.errors import ModelError, ModelWarning
 from mbsd.base.names import shown
 from mbsd.base.warning import warn
 from mbsd.kinematics.change_points.passages import determinant_of, sides_of
+from mbsd.kinematics.limits.cables import refuse_left_wheels
 from mbsd.kinematics.limits.contacts import refuse_passed_contacts
 from mbsd.kinematics.limits.joints import limits_of, refuse_jumps, refuse_passed
 from mbsd.kinematics.march import March, march_along
@@ -69,6 +70,8 @@ def sweep(
         inner, poses = march.closely()
         refuse_passed(packed, inner, poses, smooth=True)
         refuse_passed_contacts(m, packed, inner, poses)
+    if "span" in packed.specials.names:
+        refuse_left_wheels(packed, *march.closely())
     if CurveBranches(packed).rows:
         refuse_jumps(packed, *march.closely())
     check_pistons(packed, grid, march.q)
@@ -118,12 +121,7 @@ def _solution(m: Model, ready: Prepared, grid: np.ndarray, march: March) -> Solu
 
 
 def _named(
-    m: Model,
-    ready: Prepared,
-    march: March,
-    motion: tuple[np.ndarray, ...],
-    loads: Efforts,
-    states: np.ndarray | None,
+    m: Model, ready: Prepared, march: March, motion: tuple[np.ndarray, ...], loads: Efforts, states: np.ndarray | None
 ) -> Solution:
     """Return the results by name of a ``motion``: times (T,), drives, q, v and a (T, 3 nb)."""
     grid, drives, q, v, a = motion

@@ -14,6 +14,7 @@ from mbsd.base.arguments import several_numbers
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such, shown
 from mbsd.model.body import Body, Marker
+from mbsd.model.cables import cable, cable_span, over, slack_span
 from mbsd.model.contacts import (
     angle_stop,
     coordinate_stop,
@@ -71,6 +72,9 @@ class Building(Model):
     geneva = geneva
     angle_lock = angle_lock
     constraint = constraint
+    cable_span = cable_span
+    cable = cable
+    over = over
 
     # -- drivers -------------------------------------------------------------------------------------------------------
 
@@ -113,6 +117,7 @@ class Building(Model):
     rigid_discs = rigid_discs
     rigid_terrain = rigid_terrain
     rope = rope
+    slack_span = slack_span
     angle_stop = angle_stop
     coordinate_stop = coordinate_stop
     stop = stop

@@ -57,6 +57,7 @@ class Special:
 SPECIALS: dict[str, Special] = {
     "gear": Special("gear", "m", phased=True),
     "rack": Special("linear", "m", phased=True),
+    "span": Special("span", "m", phased=True),
     "height": Special("linear", "m"),
     "curve": Special("curve", "m"),
     "curve_rolling": Special("curve_rolling", "m", phased=True),

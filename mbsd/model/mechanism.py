@@ -71,7 +71,8 @@ class Model(Suggesting):
             "rack": "rack_and_pinion",
             "wheel": "rolling_disc",
             "damper": "spring",
-            "cable": "rope",
+            "pulley": "cable",
+            "winch": "cable",
             "solve": "sweep",
             "plot": "draw",
         }

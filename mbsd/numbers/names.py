@@ -210,10 +210,7 @@ def changed(m: Model, values: Mapping[str, object]) -> Model:
 
 
 def put_together(
-    m: Model,
-    numbers: Sequence[Number],
-    values: Sequence[float],
-    changes: Mapping[str, Mapping[str, Any]] | None = None,
+    m: Model, numbers: Sequence[Number], values: Sequence[float], changes: Mapping[str, Mapping[str, Any]] | None = None
 ) -> None:
     """Set other values of numbers in a model in place; ``changes``: other arguments of ``change`` by name.
 

@@ -284,6 +284,27 @@ class Solution(Suggesting, Generic[AnyModel]):
         fx, fy, torque = self.wrench[:, k].T
         return JointView(place.x, place.y, fx, fy, torque, acting(self.packed, self.q, self.wrench, k))
 
+    def tension(self, name: str) -> np.ndarray:
+        """Return the pull (N) of a cable in each of its spans, (T, spans), or of one span or rod by its name, (T,).
+
+        It is negative where a taut cable or a rod pushes.
+        """
+        pulling = [("distance",), ("span",)]
+        rows = {
+            joint.name: self.packed.rows_of(k).start
+            for k, joint in enumerate(self.packed.joints)
+            if joint.kind.constraints in pulling and joint.motion is None
+        }
+        if name in rows:
+            return self._pull(rows[name])
+        spans = [rows[f"{name} {k + 1}"] for k in range(len(rows)) if f"{name} {k + 1}" in rows]
+        self._index(name, [*rows, *([name] if spans else [])], "cable, span or rod")
+        return np.stack([self._pull(row) for row in spans], axis=1)
+
+    def _pull(self, row: int) -> np.ndarray:
+        """Return the multiplier (T,) of a row whose coordinate is a length, positive where it pulls."""
+        return self.lam[:, row] if row < self.packed.contact_rows else -self.lam[:, row]
+
     def driver(self, name: str) -> DriverView:
         """Value, effort and power of a driver."""
         k = self._index(name, list(self.mechanism.drivers), "driver")

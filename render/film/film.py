@@ -23,6 +23,7 @@ from render.film.rollers import Rollers
 from render.film.scene import Card, LabelSpec, LegendRow, LineSpec, Plane, Scene, State, StudioSpec, Writing
 from render.film.section import between_bodies
 from render.film.tubes.belts import Belt, belts
+from render.film.tubes.cables import Cable, cables
 from render.film.tubes.spirals import Spiral, spirals
 from render.film.tubes.stretched import Stretched, stretched
 from render.film.tubes.trails import Trails, trails_of
@@ -160,9 +161,9 @@ class Film:
         return Arcs(self.poses.time, torques(self.motion, self.shot.show), self.size, least)
 
     @cached_property
-    def drawn(self) -> list[Stretched | Spiral | Belt]:
+    def drawn(self) -> list[Stretched | Spiral | Belt | Cable]:
         """All that is laid anew in every frame."""
-        return [*self.stretched, *self.spirals, *self.belts]
+        return [*self.stretched, *self.spirals, *self.belts, *self.cables]
 
     @cached_property
     def stretched(self) -> list[Stretched]:
@@ -173,6 +174,11 @@ class Film:
     def belts(self) -> list[Belt]:
         """Belts and chains."""
         return list(belts(self.motion, self._held))
+
+    @cached_property
+    def cables(self) -> list[Cable]:
+        """Cables over pulleys."""
+        return list(cables(self.motion, self.size, self.heights.spring, self._held))
 
     @cached_property
     def _held(self) -> dict[str, Held]:

@@ -85,6 +85,8 @@ def scene_of(film: Film, pieces: Sequence[PieceSpec], front: float = math.inf) -
         springs.stretched(stretched)
     for spiral in film.spirals:
         springs.spiral(spiral)
+    for cable in film.cables:
+        springs.cable(cable, film.poses)
     belts = [node for belt in film.belts for node in add_belt(document, animation, paints, film.poses, belt, front)]
     root = document.add(
         "nodes",

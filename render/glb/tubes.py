@@ -15,6 +15,7 @@ from render.blender.scene.tubes import tube_vertices as vertices
 from render.film.poses import Moment, Poses, moved
 from render.film.scene import TubeSpec
 from render.film.tubes.belts import CHAIN, Belt
+from render.film.tubes.cables import Cable
 from render.film.tubes.spirals import Spiral
 from render.film.tubes.stretched import Path, Stretched
 from render.glb.document import INDICES, VERTICES, Animation, Document, Paints
@@ -234,6 +235,14 @@ class Springs:
                     self._straight(spec, f"{spec.name} {k + 1}", ropes[:, [first, last]])
             else:
                 self._coil(spec, path, a, b)
+
+    def cable(self, cable: Cable, poses: Poses) -> None:
+        """Add a cable over pulleys: straight tubes from point to point of its path."""
+        [spec] = cable.specs
+        moments = [Moment(float(poses.time[k]), 0) for k in self._animation.fewer]
+        paths = np.array([cable.paths(poses, at)[0] for at in moments])
+        for k in range(spec.points - 1):
+            self._straight(spec, f"{spec.name} {k + 1}", paths[:, k : k + 2])
 
     def spiral(self, spring: Spiral) -> None:
         """Add a torsion spring."""

@@ -11,8 +11,8 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
 
+from render.insights.loops import marks
 from render.plots.style import QUIET, SIZE
-from render.report.transmission import marks
 from shared.contract import Motion
 from shared.contract.quantity import angle_step, figures, labelled, prefixed, written
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from render import FRAME_SOURCES
 from render.freshness import clearance_files, current_clearance
+from render.insights import insights
 from render.report import sections
 from render.report.loads import load_section
 from render.report.orders import orders_section
@@ -19,6 +20,8 @@ from shared.stage.files import sources_hash, write_bytes
 from shared.stage.paths import Out, mechanism_file
 from shared.stage.stages import Stage, contract_sources, key_of, versions
 
+TOLD = 8
+"""Insights of a report, at most."""
 READ = [*contract_sources("clearance"), *FRAME_SOURCES]
 
 
@@ -60,6 +63,7 @@ def report(motion: Motion, parts: Parts | None, clearance: Clearance | None, sai
     lines += [said, ""] if said else []
     lines += sections.motion_section(motion)
     for head, body in (
+        ("Insights", insight_section(motion)),
         ("Travel", travel_section(motion)),
         ("Events", event_section(motion)),
         ("Speeds", sections.speed_section(motion)),
@@ -77,6 +81,11 @@ def report(motion: Motion, parts: Parts | None, clearance: Clearance | None, sai
     while "\n\n\n" in text:
         text = text.replace("\n\n\n", "\n\n")
     return text.rstrip() + "\n"
+
+
+def insight_section(motion: Motion) -> list[str]:
+    """Return what the motion shows as a list, the most telling first."""
+    return [f"- {each.sentence()}" for each in insights(motion)[:TOLD]]
 
 
 def description(name: str) -> str:

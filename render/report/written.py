@@ -10,6 +10,7 @@ import numpy as np
 from render.magnitudes import floors
 from shared.contract import Motion
 from shared.contract.quantity import MINUS, counted, figures, written
+from shared.stage.console import markdown_table
 
 __all__ = ["Amounts", "counted", "degrees", "first_peak", "listed", "moment", "speed", "table", "turning", "written"]
 
@@ -61,5 +62,4 @@ def first_peak(values: np.ndarray) -> int:
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     """Return lines of a table; the first column is words, the others numbers."""
-    lines = [f"| {' | '.join(head)} |", f"|---|{'---:|' * (len(head) - 1)}"]
-    return [*lines, *(f"| {' | '.join(row)} |" for row in rows)]
+    return markdown_table(head, rows, numbers=range(1, len(head)))

@@ -14,8 +14,9 @@ from render.film.film import Film
 from render.film.poses import local_place
 from render.film.tubes.trails import colour_of, trails_of
 from render.freshness import current_clearance
+from render.insights import insights
+from render.insights.loops import marks
 from render.magnitudes import floor_of, floors, shaking, without_noise
-from render.report.transmission import marks
 from render.view.loads import arcs_of, arrows_of, clearance_of
 from render.view.solid import with_parts
 from shared.contract import JointMotion, Motion, read_motion, read_parts
@@ -46,7 +47,9 @@ from shared.stage.paths import Out
 #     left out couple                  null, or mx my (T,) of bodies in different places along the normal of the plane
 #     energy                  kinetic potential (T,), work audit (T,) or null margin                  (T,) smallest over
 #     largest singular value of the scaled Jacobian marks                   [{time, words, kind: "event" or "dead
-#     point"}] skeleton                unit, low, high (m); strokes, names, times: see skeleton() arrows, arcs
+#     point"}]
+#     insights                [{time, words}] of a page made from files, the most telling first
+#     skeleton                unit, low, high (m); strokes, names, times: see skeleton() arrows, arcs
 #     see loads.py trails                  [{point, colour (linear) or null: as the theme has it, tail (turns), radius,
 #     z}] clearance               null, or limit and pairs: see loads.py solid                   null, or the parts: see
 #     solid.py
@@ -58,6 +61,8 @@ UNITS = {
     "power": "W", "kinetic": "J", "potential": "J",
 }  # fmt: skip
 """Units of series whose rounding is drawn as zero."""
+TOLD = 6
+"""Insights on the page, at most."""
 EFFORTS = ("effort", "normal", "friction")
 """Series in the unit of the effort of their driver, force or contact."""
 
@@ -112,6 +117,7 @@ def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bo
             {"time": time, "words": words, "kind": "dead point" if words.endswith("turns back") else "event"}
             for time, words in marks(motion)
         ],
+        "insights": [],
         "skeleton": skeleton(moving),
         **({"arrows": arrows_of(motion, size), "arcs": arcs_of(motion, size)} if arrows else {}),
         "trails": [
@@ -271,8 +277,9 @@ def read_payload(out: Out) -> dict[str, Any]:
         )
     shot = read_shot(out.shot) if out.shot.is_file() else Shot()
     parts = read_parts(out.parts, out.name) if out.parts.is_file() else None
-    motion = with_rods(motion, parts) if parts else motion
+    solved, motion = motion, with_rods(motion, parts) if parts else motion
     page = payload(motion, skeleton.moving, shot)
+    page["insights"] = [{"time": each.start, "words": each.sentence()} for each in insights(solved)[:TOLD]]
     film = Film(motion, parts, shot, out.parts_folder) if parts else None
     if film is not None:
         page = with_parts(page, film)

@@ -1,8 +1,9 @@
-"""Geometry that follows from files: belts round two pulleys, rods between two places, and reactions."""
+"""Geometry that follows from files: belts round two pulleys, spans of cables, rods, and reactions."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -102,6 +103,33 @@ class BeltPath:
         arc, strand, _, _ = self.parts
         start, sense = (math.pi - self.beta, -1.0) if self.crossed else (-self.beta, 1.0)
         return start + sense * (along - arc - strand) / self.second
+
+
+def span_ends(first: Array, second: Array, radii: tuple[float, float]) -> Array:
+    """Return (..., 2, 2) where a cable leaves one wheel and meets the next, whose centres are (..., 2).
+
+    ``radii`` are negative where the cable turns clockwise. See mbsd/equations/relative/span.py.
+    """
+    gap = second - first
+    offset = radii[1] - radii[0]
+    lean = np.arcsin(np.clip(offset / np.hypot(gap[..., 0], gap[..., 1]), -1.0, 1.0))
+    left = _ray(np.arctan2(gap[..., 1], gap[..., 0]) - lean + math.pi / 2)
+    return np.stack([first - radii[0] * left, second - radii[1] * left], axis=-2)
+
+
+def rows_of_spans[Wheel](wheels: Mapping[str, tuple[Wheel | None, Wheel | None]]) -> list[list[str]]:
+    """Return the names of spans cable by cable: each begins on the wheel on which the one before ends.
+
+    ``wheels``: of each span the wheel on which it begins and that on which it ends; None of a point.
+    """
+    rows: list[list[str]] = []
+    for name, (first, _) in wheels.items():
+        row = next((row for row in rows if first is not None and wheels[row[-1]][1] == first), None)
+        if row is None:
+            rows.append([name])
+        else:
+            row.append(name)
+    return rows
 
 
 def _ray(angle: Array | float) -> Array:

@@ -7,7 +7,7 @@ import signal
 import sys
 import time
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from importlib.util import find_spec
 from pathlib import Path
@@ -52,6 +52,12 @@ def warn(stage: str, text: str) -> None:
 def fail(text: str) -> None:
     """Print one line ``error: text`` on stderr."""
     _line("error", text, RED, sys.stderr)
+
+
+def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]], numbers: Collection[int] = ()) -> list[str]:
+    """Return the lines of a table in Markdown; columns ``numbers`` are set to the right."""
+    marks = ["--:" if k in numbers else "---" for k in range(len(head))]
+    return [f"| {' | '.join(head)} |", f"|{'|'.join(marks)}|", *(f"| {' | '.join(row)} |" for row in rows)]
 
 
 @contextmanager

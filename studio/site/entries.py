@@ -11,6 +11,7 @@ from pathlib import Path
 
 from render.freshness import current_clearance
 from render.gallery import sentences
+from render.insights import insights
 from render.report import description
 from render.report.facts import facts
 from render.view.payload import title_of
@@ -145,6 +146,10 @@ def _zipped(paths: list[Path]) -> bytes:
 # Entries of the site: what it says of each mechanism, read from its files.
 
 
+TOLD = 5
+"""Insights on the page of a mechanism, at most."""
+
+
 @dataclass
 class Entry:
     """Entry of one mechanism. ``picture`` and ``loop`` are files in its folder of the site."""
@@ -157,6 +162,7 @@ class Entry:
     picture: str = ""
     loop: str = ""
     film: str = ""
+    insights: list[str] = field(default_factory=list)
     has_sliders: bool = False
     downloads: list[Download] = field(default_factory=list)
     neighbours: list[str] = field(default_factory=list)
@@ -169,4 +175,6 @@ def entry_of(name: str) -> Entry:
     parts = read_parts(out.parts, name) if out.parts.is_file() else None
     clearance = current_clearance(out, parts, "site")
     text = description(name)
-    return Entry(name, title_of(name), sentences(text), facts(motion, parts, clearance), purposes(name, text, motion))
+    told = [each.sentence() for each in insights(motion)[:TOLD]]
+    known = facts(motion, parts, clearance)
+    return Entry(name, title_of(name), sentences(text), known, purposes(name, text, motion), insights=told)

@@ -127,7 +127,8 @@ def wall(title: str, entries: Sequence[Entry], filters: Sequence[str]) -> str:
 
 def machine(entry: Entry, others: Sequence[Entry]) -> str:
     """Return index.html of a mechanism: its film, sliders, numbers, files and neighbours."""
-    facts = "\n".join(f"<li>{escape(fact)}</li>" for fact in entry.facts)
+    facts, told = ("\n".join(f"<li>{escape(each)}</li>" for each in rows) for rows in (entry.facts, entry.insights))
+    shows = f'<h2>What it shows</h2>\n<ul class="insights">\n{told}\n</ul>\n' if told else ""
     files = "\n".join(
         f'<li><a href="files/{escape(each.file)}" download>{escape(each.words)} '
         f"<small>{_size(each.size)}</small></a></li>"
@@ -160,7 +161,7 @@ def machine(entry: Entry, others: Sequence[Entry]) -> str:
 <h2>The machine</h2>
 <p>Turn it, play it, click a joint for its forces.{moved} <a href="machine.html">On a page of its own</a></p>
 {inside}
-<h2>In numbers</h2>
+{shows}<h2>In numbers</h2>
 <ul class="facts">
 {facts}
 </ul>

@@ -12,7 +12,7 @@ from scipy.optimize import fsolve
 
 from mbsd import Mechanism, harmonic, polynomial
 from mbsd.measures import final, samples
-from tools.models.rough import carried_five_bar, dragged_arm, pusher
+from tools.models.rough import carried_five_bar, dragged_arm, pushed_block, pusher
 
 TIMES = np.linspace(0.0, 1.0, 21)
 
@@ -140,23 +140,8 @@ def test_a_block_gives_way_to_a_linkage_that_pressed_it_down_while_it_held() -> 
 
 G = 9.81
 RATE = 2.0
-PIN, STATIC, FLOOR, RADIUS, PRELOAD = 0.2, 0.25, 0.3, 0.02, 20.0
-
-
-def pushed_block() -> Mechanism:
-    """A crank with dry bearings under a torque RATE t, whose rod pushes a block on two rough feet."""
-    m = Mechanism("pushed block", gravity=(0, -G))
-    crank, rod, block = m.bar("crank", 0.1, mass=0.3), m.bar("rod", 0.4, mass=0.2), m.body("block", 2.0, inertia=0.02)
-    m.revolute("O", m.ground.at(0, 0.1), crank.start)
-    m.revolute("A", crank.end, rod.start)
-    m.revolute("B", rod.end, block.at(0, 0.02))
-    for pin in "OAB":
-        m.friction(f"rub {pin}", pin, PIN, static=STATIC, radius=RADIUS, preload=PRELOAD, sticks=True)
-    for name, x in (("rear", -0.1), ("front", 0.1)):
-        m.rigid_contact(name, m.ground.at(0, 0), block.at(x, -0.05), friction=FLOOR)
-    m.torque("motor", crank, polynomial(0.0, RATE))
-    m.start_near(crank=60, rod=-10, block=(0.44, 0.05, 0))
-    return m
+STATIC, FLOOR, RADIUS, PRELOAD = 0.24, 0.3, 0.02, 20.0
+"""Of pins and feet of tools/models/rough.py."""
 
 
 def greatest_torque(crank: float, rod: float, senses: tuple[float, float, float]) -> float:
@@ -200,7 +185,7 @@ def greatest_torque(crank: float, rod: float, senses: tuple[float, float, float]
 
 def test_a_crank_breaks_away_at_the_torque_of_statics() -> None:
     """Three pins and two feet hold one freedom together: none gives way before all are at their limits."""
-    sol = pushed_block().simulate(0.6, steps=60)
+    sol = pushed_block(True, torque=polynomial(0.0, RATE), preload=PRELOAD).simulate(0.6, steps=60)
     breaks = [event.time for event in sol.events if event.name.startswith("rub") and event.what == "slides"][-1]
     stops = [event.time for event in sol.events if event.name == "rub O" and event.what == "sticks"][-1]
     k = int(np.searchsorted(sol.t, breaks)) - 1

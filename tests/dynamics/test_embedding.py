@@ -21,7 +21,9 @@ from mbsd.dynamics.simulate import integrator_named
 from mbsd.kinematics.groups.groups import KIND
 from mbsd.kinematics.groups.tables import NAMES
 from mbsd.results.solution import Solution
+from tests.dynamics.test_simulate import n_four_bar
 from tools.models.assur_models import MODELS
+from tools.models.linkages import four_bar
 
 PAIRS = ("q", "v", "a")
 
@@ -165,14 +167,7 @@ def test_forces_of_all_sorts() -> None:
 
 
 def _light() -> Mechanism:
-    m = Mechanism("light")
-    crank, coupler, rocker = m.bar("crank", 0.1, 1.0), m.bar("coupler", 0.38), m.bar("rocker", 0.3, 1.0)
-    m.revolute("O", m.ground.at(0, 0), crank.start)
-    m.revolute("A", crank.end, coupler.start)
-    m.revolute("B", coupler.end, rocker.end)
-    m.revolute("C", m.ground.at(0.4, 0), rocker.start)
-    m.start_near(crank=10, coupler=45, rocker=90)
-    return m
+    return four_bar(0.4, 0.1, 0.38, 0.3, (45.0, 90.0), masses=(1.0, None, 1.0), law=None, at=10.0)
 
 
 def test_bodies_without_mass() -> None:
@@ -199,14 +194,8 @@ def test_multipliers_of_outputs_are_those_of_reference_coordinates_to_the_last_d
 
 def double_rocker() -> Mechanism:
     """Neither lever turns round: both pass poses in which they tell the other's place badly."""
-    m = Mechanism("double rocker")
-    left, coupler, right = m.bar("left", 0.3, 1.0), m.bar("coupler", 0.2, 0.5), m.bar("right", 0.32, 1.0)
-    m.revolute("O", m.ground.at(0, 0), left.start)
-    m.revolute("A", left.end, coupler.start)
-    m.revolute("B", coupler.end, right.end)
-    m.revolute("C", m.ground.at(0.4, 0), right.start)
-    m.start_near(left=70, coupler=5, right=110)
-    m.start_moving(left=8.0)
+    m = four_bar(0.4, 0.3, 0.2, 0.32, (5.0, 110.0), masses=(1.0, 0.5, 1.0), law=None, at=70.0)
+    m.start_moving(crank=8.0)
     return m
 
 
@@ -225,49 +214,31 @@ def test_coordinates_change_where_others_are_better(monkeypatch: pytest.MonkeyPa
     assert np.ptp(independent.energy.total) < 1e-6
 
 
-def parallelogram(loops: int = 1) -> Mechanism:
-    """Rods that swing through the pose where all lie in one line."""
-    m = Mechanism("parallelogram")
-    last = None
-    for k in range(loops + 1):
-        rod = m.bar(f"rod{k}", 1.0, 1.0)
-        m.revolute(f"foot{k}", m.ground.at(k, 0), rod.start)
-        m.start_near(**{rod.name: 90})
-        m.start_moving(**{rod.name: -1.0})
-        if last is not None:
-            bar = m.bar(f"bar{k}", 1.0, 1.0)
-            m.revolute(f"left{k}", last.end, bar.start)
-            m.revolute(f"right{k}", bar.end, rod.end)
-            m.start_near(**{bar.name: 0})
-        last = rod
-    return m
-
-
 @pytest.mark.parametrize("loops", [1, 5])
 def test_change_points_are_passed_on_the_smooth_branch(loops: int) -> None:
-    sol = parallelogram(loops).simulate(6.0, steps=333, tolerance=1e-9, formulation="independent")
+    sol = n_four_bar(loops).simulate(6.0, steps=333, tolerance=1e-9, formulation="independent")
     for k in range(1, loops + 1):
-        np.testing.assert_allclose(sol.body(f"bar{k}").theta, 0.0, atol=1e-6)
-        np.testing.assert_allclose(sol.body(f"rod{k}").theta, sol.body("rod0").theta, atol=1e-6)
-    assert abs(sol.body("rod0").theta[-1]) > 2 * math.pi
+        np.testing.assert_allclose(sol.body(f"coupler {k}").theta, 0.0, atol=1e-6)
+        np.testing.assert_allclose(sol.body(f"rod {k}").theta, sol.body("rod 0").theta, atol=1e-6)
+    assert abs(sol.body("rod 0").theta[-1]) > 2 * math.pi
     assert np.ptp(sol.energy.total) < 1e-5
 
 
 def test_an_output_at_a_change_point_itself() -> None:
     """The very time of the flat pose is an output, then the end."""
-    m = parallelogram()
+    m = n_four_bar(1)
     sol = m.simulate(2.0, steps=2000, tolerance=1e-11)
-    k = int(np.argmax(sol.body("rod0").theta < 0))
-    t, theta, omega, here = sol.t[k], sol.body("rod0").theta[k], sol.body("rod0").omega[k], sol
+    k = int(np.argmax(sol.body("rod 0").theta < 0))
+    t, theta, omega, here = sol.t[k], sol.body("rod 0").theta[k], sol.body("rod 0").omega[k], sol
     for _ in range(3):
         t -= theta / omega
         here = m.simulate(times=[0.0, t, 2.0], tolerance=1e-11, formulation="independent")
-        theta, omega = here.body("rod0").theta[1], here.body("rod0").omega[1]
+        theta, omega = here.body("rod 0").theta[1], here.body("rod 0").omega[1]
     assert abs(theta) < 1e-7
     assert here.stats.independent
     assert np.isfinite(here.q).all()
     assert np.isfinite(here.v).all()
-    np.testing.assert_allclose(here.body("bar1").theta, 0.0, atol=1e-6)
+    np.testing.assert_allclose(here.body("coupler 1").theta, 0.0, atol=1e-6)
     np.testing.assert_allclose(here.q[-1], sol.q[-1], atol=1e-6)
     end = m.simulate(times=[0.0, t], tolerance=1e-11, formulation="independent")
     for name in ("q", "v"):
@@ -296,9 +267,9 @@ def test_what_must_stay_in_reference_coordinates_says_why() -> None:
 
 def test_no_choice_at_a_flat_pose() -> None:
     """All rods in one line: no coordinate tells the branch."""
-    ready = prepare_dynamics(parallelogram(), 0.0, 1.0)
+    ready = prepare_dynamics(n_four_bar(1), 0.0, 1.0)
     q = ready.initial.q.copy()
-    q[:] = [0, 0, 0, 0.5, 0, 0, 1.5, 0, 0, 1.5, 0, 0]  # ground, rod0, rod1, bar1 (in the order of their making)
+    q[:] = [0, 0, 0, 0.5, 0, 0, 1.5, 0, 0, 1.5, 0, 0]  # ground, rod 0, rod 1, coupler 1
     assert embed(ready, q, np.zeros_like(q), 0.0) is None
 
 

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import importlib
 import itertools
 import math
-import pkgutil
 from typing import Any
 
 import numpy as np
 import pytest
 
-import mbsd.dynamics.integrators
 from mbsd import (
     Mechanism,
     ModelError,
@@ -23,11 +20,10 @@ from mbsd import (
 )
 from mbsd.dynamics.integrators.kind import INTEGRATORS
 from mbsd.results.solution import Solution
+from mbsd.testing import integrators
 from tools.models.contact_models import G, balance, ball, box, disc, times_of
 
-for module in pkgutil.iter_modules(mbsd.dynamics.integrators.__path__):
-    importlib.import_module(f"mbsd.dynamics.integrators.{module.name}")
-METHODS = sorted(name for name in INTEGRATORS if INTEGRATORS[name].installed)
+METHODS = sorted(method.name for method in integrators() if method.installed)
 
 
 @pytest.mark.parametrize("restitution", [0.5, 0.8])

@@ -9,7 +9,7 @@ import pytest
 
 from mbsd import Mechanism
 from mbsd.results.solution import Solution
-from tools.models.guided import two_genevas
+from tools.models.guided import free_geneva, two_genevas
 
 CENTRES = 0.2
 
@@ -73,26 +73,12 @@ def test_a_run_that_ends_on_a_jump_has_its_last_row() -> None:
 
 def test_a_step_that_begins_right_after_a_jump_and_ends_beyond_the_next() -> None:
     """Its gap is rounding there and moves away: the next jump is looked for in time, not by how the gap falls."""
-    m = free_geneva(6, (0.0, -9.81))
-    m.torsion_spring("spring", m.ground, m.bodies["crank"], 0.013244147157190635)
+    m = free_geneva(6)
+    m.change("spring", stiffness=0.013244147157190635)
     sol = m.simulate(2.0, steps=20, tolerance=1e-9, formulation="independent")
     assert np.ptp(sol.audit) < 1e-8
-    fine = free_geneva(6, (0.0, -9.81))
-    fine.torsion_spring("spring", fine.ground, fine.bodies["crank"], 0.013244147157190635)
-    other = fine.simulate(2.0, steps=20, formulation="independent")
+    other = m.simulate(2.0, steps=20, formulation="independent")
     np.testing.assert_allclose(other.body("crank").theta, sol.body("crank").theta, atol=1e-4)
-
-
-def free_geneva(slots: int, gravity: tuple[float, float] | None, speed: float = 10.0) -> Mechanism:
-    """A crank with a flywheel's inertia that turns a wheel and its own unbalance."""
-    m = Mechanism("geneva", gravity=gravity)
-    crank, wheel = m.body("crank", 0.5, (0.01, 0.0), 1e-3), m.body("wheel", 1.0, (0.0, 0.0), 2e-3)
-    m.revolute("O", m.ground.origin, crank.origin)
-    m.revolute("W", m.ground.at(0.1, 0), wheel.origin)
-    m.geneva("index", crank.origin, wheel.origin, slots, 0.1 * math.sin(math.pi / slots))
-    m.start_near(wheel=5)
-    m.start_moving(crank=speed)
-    return m
 
 
 @pytest.mark.parametrize("slots", [4, 6])
@@ -108,8 +94,8 @@ def test_no_index_changes_the_energy(slots: int, gravity: tuple[float, float] | 
 def test_a_crank_that_swings_back_at_its_slot_is_followed() -> None:
     """It passes jumps again and again; one that is passed there and back within a step errs by the tolerance."""
     for speed in (0.2, 1.0, 2.3, 4.0):
-        m = free_geneva(4, (0.0, -9.81), speed)
-        m.torsion_spring("spring", m.ground, m.bodies["crank"], 0.02)
+        m = free_geneva(4, speed=speed)
+        m.change("spring", stiffness=0.02)
         sol = m.simulate(3.0, steps=100, tolerance=1e-9, formulation="independent")
         assert np.ptp(sol.audit) < 1e-8, speed
 

@@ -125,6 +125,9 @@ def test_work_of_a_driver_goes_into_the_energy(name: str) -> None:
     assert sol.work is not None
     assert np.ptp(sol.energy.total) > 0.1
     np.testing.assert_allclose(sol.energy.total - sol.work, sol.energy.total[0], atol=1e-4)
+    np.testing.assert_allclose(
+        sol.body("crank").theta, sol.driver("motor").value, atol=1e-4 if name == "baumgarte" else 1e-12
+    )
 
 
 # -- symplectic ---------------------------------------------------------------------------------------------------

@@ -192,7 +192,9 @@ def bars(loops: int, turn: float) -> Mechanism:
 @pytest.mark.parametrize(
     ("formulation", "loops", "tolerance", "turn"),
     [
+        ("independent", 1, 1e-7, 0.0),
         ("independent", 5, 1e-7, 0.0),
+        ("independent", 10, 1e-8, 0.0),
         ("independent", 5, 1e-9, 0.3),
         ("independent", 5, 1e-10, 1.1),
         ("independent", 5, 3e-11, 0.0),

@@ -1,4 +1,4 @@
-"""A project of a test's own with two mechanisms, whose stages run as new processes would."""
+"""Projects and mechanism.py of a test's own, and every mechanism of the gallery with its variants."""
 
 from __future__ import annotations
 
@@ -6,13 +6,14 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 
 import mechanisms
 from mechanisms.stages.loading import inputs, loading
 from shared.stage import paths
-from shared.stage.paths import ROOT
+from shared.stage.paths import ROOT, mechanism_folder, mechanism_names, variants_in
 
 HEAD = "from pathlib import Path\nfrom shared.shot import Shot\nHERE = Path(__file__).parent\n"
 
@@ -74,3 +75,20 @@ def write_file(path: str, text: str) -> Callable[[Project], None]:
         file.write_text(text)
 
     return step
+
+
+class Author:
+    """A mechanism.py of the test's own: ``build``, and whatever else it defines."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, build: Any, **more: Any) -> None:
+        self.build = build
+        for name, value in more.items():
+            setattr(self, name, value)
+        monkeypatch.setattr(loading, "load", lambda *_: self)
+        monkeypatch.setattr(loading, "params", lambda _: None)
+
+
+def folders_and_variants() -> list[str]:
+    """Return names of all mechanisms, each followed by those of its variants."""
+    files = {owner: mechanism_folder(owner) / "mechanism.py" for owner in mechanism_names()}
+    return [name for owner, file in files.items() for name in (owner, *(f"{owner}-{v}" for v in variants_in(file)))]

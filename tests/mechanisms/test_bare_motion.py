@@ -10,13 +10,12 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, constant_rate
-from mechanisms.stages.loading import loading
 from mechanisms.stages.solve import stage as solve_stage
 from mechanisms.stages.solve.masses import HALF_WIDTH, THICKNESS, bare_solution, estimated_masses, give_masses
 from shared.contract import read_motion
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
-from tests.mechanisms.author_project import Project, write_file
+from tests.mechanisms.author_project import Author, Project, write_file
 
 PENDULUM = """
 from mbsd import Mechanism
@@ -35,17 +34,6 @@ def build(p):
 """
 
 
-class _Author:
-    """A mechanism.py of the test's own."""
-
-    def __init__(self, monkeypatch: pytest.MonkeyPatch, build: Any, **more: Any) -> None:
-        self.build = build
-        for name, value in more.items():
-            setattr(self, name, value)
-        monkeypatch.setattr(loading, "load", lambda *_: self)
-        monkeypatch.setattr(loading, "params", lambda _: None)
-
-
 def _pendulum(p: None = None) -> Mechanism:
     m = Mechanism("arm")
     arm = m.bar("arm", 0.3)
@@ -61,7 +49,7 @@ def _crank(p: None = None) -> Mechanism:
 
 
 def test_a_driven_mechanism_is_swept_over_its_period(monkeypatch: pytest.MonkeyPatch) -> None:
-    _Author(monkeypatch, _crank)
+    Author(monkeypatch, _crank)
     solution = bare_solution("arm")
     assert solution.period == pytest.approx(0.5)
     assert len(solution.t) == 361
@@ -75,21 +63,21 @@ def test_a_geared_mechanism_is_swept_until_all_is_back(monkeypatch: pytest.Monke
         m.gear_pair("mesh", m.bodies["arm"].start, wheel.origin, radius_i=0.02, radius_j=0.04)
         return m
 
-    _Author(monkeypatch, build)
+    Author(monkeypatch, build)
     solution = bare_solution("arm")
     assert solution.period == pytest.approx(1.0)  # two turns of the motor
     assert len(solution.t) == 721
 
 
 def test_a_stated_duration_and_number_of_steps_count(monkeypatch: pytest.MonkeyPatch) -> None:
-    _Author(monkeypatch, _crank, DURATION=0.2, STEPS=10)
+    Author(monkeypatch, _crank, DURATION=0.2, STEPS=10)
     solution = bare_solution("arm")
     assert solution.t[-1] == 0.2
     assert len(solution.t) == 11
 
 
 def test_mechanisms_without_drivers_are_simulated(monkeypatch: pytest.MonkeyPatch) -> None:
-    _Author(monkeypatch, _pendulum, DURATION=0.5)
+    Author(monkeypatch, _pendulum, DURATION=0.5)
     solution = bare_solution("arm")
     assert solution.t[-1] == 0.5
     assert len(solution.t) == 361
@@ -112,7 +100,7 @@ def test_mechanisms_without_drivers_are_simulated(monkeypatch: pytest.MonkeyPatc
 def test_missing_and_invalid_constants_are_reported(
     monkeypatch: pytest.MonkeyPatch, constants: dict[str, Any], words: str
 ) -> None:
-    _Author(monkeypatch, _pendulum, **constants)
+    Author(monkeypatch, _pendulum, **constants)
     with pytest.raises(UserError, match=words):
         bare_solution("arm")
 
@@ -179,7 +167,7 @@ def test_rows_lie_so_close_that_the_film_shows_the_motion_itself(monkeypatch: py
     """Between any two rows the quintic of the film is where a finer simulation is, also in a stiff contact."""
     from render.film.poses import hermite
 
-    _Author(monkeypatch, _bouncing, DURATION=1.0)
+    Author(monkeypatch, _bouncing, DURATION=1.0)
     solution, plain = bare_solution("arm"), _bouncing().simulate(1.0, 360)
     fine = np.linspace(0.0, 1.0, 20001)
     exact = _bouncing().simulate(times=fine).body("ball").y
@@ -193,7 +181,7 @@ def test_rows_lie_so_close_that_the_film_shows_the_motion_itself(monkeypatch: py
 
 
 def test_smooth_motions_get_no_more_rows(monkeypatch: pytest.MonkeyPatch) -> None:
-    _Author(monkeypatch, _pendulum, DURATION=1.0)
+    Author(monkeypatch, _pendulum, DURATION=1.0)
     assert len(bare_solution("arm").t) == 361
 
 
@@ -207,11 +195,11 @@ def test_impacts_without_rows_of_their_own_are_told(
         m.start_near(ball=(0.0, 0.2, 0.0))
         return m
 
-    _Author(monkeypatch, build, motion=lambda m, p: m.simulate(0.25, steps=20))
+    Author(monkeypatch, build, motion=lambda m, p: m.simulate(0.25, steps=20))
     bare_solution("arm")
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("solve: warning: arm: 1 impact, the first 'floor' at 0.19")
-    _Author(monkeypatch, build, DURATION=0.25)
+    Author(monkeypatch, build, DURATION=0.25)
     bare_solution("arm")
     assert capsys.readouterr().err == ""
 

@@ -44,106 +44,73 @@ def setenv(value: str) -> Callable[[Project], None]:
     return lambda project: project.patch.setenv("TURNS", value)
 
 
-CSV = "mechanisms/arm/turns.csv"
+HELPER, CSV = "mechanisms/arm/helper.py", "mechanisms/arm/turns.csv"
+TURNS, NUMBERS = ("TURNS = 2\n", "TURNS = 3\n"), ("2", "3")
 FALLBACK = "try:\n    turns = int({read})\nexcept OSError:\n    turns = 2\nshot = Shot(turns=turns)\n"
-IMPORTED = "TURNS = 2\n", "TURNS = 3\n"
-CASES: dict[str, tuple[str, Callable[[Project], None], Callable[[Project], None]]] = {
+READ = "(HERE / 'turns.csv').read_text()"
+type Change = Callable[[Project], None]
+
+
+def nothing(project: Project) -> None:
+    pass
+
+
+def reads(text: str, file: str, contents: tuple[str, str] = TURNS, **beside: str) -> tuple[str, Change, Change]:
+    """Return a case that reads a file with the first content, then the second; files of other.py lie ``beside``."""
+    first = write_file(file, contents[0])
+    for name, content in beside.items():
+        first = both(first, write_file(f"mechanisms/{name.replace('__', '/')}.py", content))
+    return text, first, write_file(file, contents[1])
+
+
+CASES: dict[str, tuple[str, Change, Change]] = {
     # what shot.py says; what makes it 2 turns, and what makes it 3
-    "a module beside it": (
-        "from mechanisms.arm.helper import TURNS\nshot = Shot(turns=TURNS)\n",
-        write_file("mechanisms/arm/helper.py", IMPORTED[0]),
-        write_file("mechanisms/arm/helper.py", IMPORTED[1]),
+    "a module beside it": reads("from mechanisms.arm.helper import TURNS\nshot = Shot(turns=TURNS)\n", HELPER),
+    "a relative import": reads("from . import helper\nshot = Shot(turns=helper.TURNS)\n", HELPER),
+    "a package below it": reads(
+        "from mechanisms.arm.laws.film import TURNS\nshot = Shot(turns=TURNS)\n", "mechanisms/arm/laws/film.py"
     ),
-    "a relative import": (
-        "from . import helper\nshot = Shot(turns=helper.TURNS)\n",
-        write_file("mechanisms/arm/helper.py", IMPORTED[0]),
-        write_file("mechanisms/arm/helper.py", IMPORTED[1]),
+    "the module's own module": reads(
+        "from mechanisms.other.helper import TURNS\nshot = Shot(turns=TURNS)\n", "mechanisms/other/deep.py",
+        other__helper="from mechanisms.other.deep import TURNS\n",
     ),
-    "a package below it": (
-        "from mechanisms.arm.laws.film import TURNS\nshot = Shot(turns=TURNS)\n",
-        write_file("mechanisms/arm/laws/film.py", IMPORTED[0]),
-        write_file("mechanisms/arm/laws/film.py", IMPORTED[1]),
+    "another mechanism": reads(
+        "from mechanisms.other.mechanism import TURNS\nshot = Shot(turns=TURNS)\n", "mechanisms/other/mechanism.py"
     ),
-    "the module's own module": (
-        "from mechanisms.other.helper import TURNS\nshot = Shot(turns=TURNS)\n",
-        both(
-            write_file("mechanisms/other/helper.py", "from mechanisms.other.deep import TURNS\n"),
-            write_file("mechanisms/other/deep.py", IMPORTED[0]),
-        ),
-        write_file("mechanisms/other/deep.py", IMPORTED[1]),
-    ),
-    "another mechanism": (
-        "from mechanisms.other.mechanism import TURNS\nshot = Shot(turns=TURNS)\n",
-        write_file("mechanisms/other/mechanism.py", IMPORTED[0]),
-        write_file("mechanisms/other/mechanism.py", IMPORTED[1]),
-    ),
-    "sys.path": (
+    "sys.path": reads(
         "import sys\nsys.path.insert(0, str(HERE / 'lib'))\nimport film_turns\nshot = Shot(turns=film_turns.TURNS)\n",
-        write_file("mechanisms/arm/lib/film_turns.py", IMPORTED[0]),
-        write_file("mechanisms/arm/lib/film_turns.py", IMPORTED[1]),
+        "mechanisms/arm/lib/film_turns.py",
     ),
-    "import_module": (
-        "import importlib\nshot = Shot(turns=importlib.import_module('mechanisms.arm.helper').TURNS)\n",
-        write_file("mechanisms/arm/helper.py", IMPORTED[0]),
-        write_file("mechanisms/arm/helper.py", IMPORTED[1]),
+    "import_module": reads(
+        "import importlib\nshot = Shot(turns=importlib.import_module('mechanisms.arm.helper').TURNS)\n", HELPER
     ),
-    "exec": (
-        "exec((HERE / 'helper.py').read_text())\nshot = Shot(turns=TURNS)\n",
-        write_file("mechanisms/arm/helper.py", IMPORTED[0]),
-        write_file("mechanisms/arm/helper.py", IMPORTED[1]),
-    ),
+    "exec": reads("exec((HERE / 'helper.py').read_text())\nshot = Shot(turns=TURNS)\n", HELPER),
     "a module that was not there": (
         "try:\n    from mechanisms.arm.local import TURNS\n"
         "except ImportError:\n    TURNS = 2\nshot = Shot(turns=TURNS)\n",
-        lambda project: None,
-        write_file("mechanisms/arm/local.py", IMPORTED[1]),
+        nothing, write_file("mechanisms/arm/local.py", TURNS[1]),
     ),
-    "open": (
-        "with open(HERE / 'turns.csv') as file:\n    shot = Shot(turns=int(file.read()))\n",
-        write_file(CSV, "2"),
-        write_file(CSV, "3"),
-    ),
-    "numpy": (
-        "import numpy as np\nshot = Shot(turns=int(np.loadtxt(HERE / 'turns.csv')))\n",
-        write_file(CSV, "2"),
-        write_file(CSV, "3"),
-    ),
-    "json": (
+    "open": reads("with open(HERE / 'turns.csv') as file:\n    shot = Shot(turns=int(file.read()))\n", CSV, NUMBERS),
+    "numpy": reads("import numpy as np\nshot = Shot(turns=int(np.loadtxt(HERE / 'turns.csv')))\n", CSV, NUMBERS),
+    "json": reads(
         "import json\nshot = Shot(turns=json.loads((HERE / 'a.json').read_bytes())['turns'])\n",
-        write_file("mechanisms/arm/a.json", '{"turns": 2}'),
-        write_file("mechanisms/arm/a.json", '{"turns": 3}'),
+        "mechanisms/arm/a.json", ('{"turns": 2}', '{"turns": 3}'),
     ),
-    "a file elsewhere": (
-        "shot = Shot(turns=int((HERE.parents[2] / 'measured.txt').read_text()))\n",
-        write_file("../measured.txt", "2"),
-        write_file("../measured.txt", "3"),
+    "a file elsewhere": reads(
+        "shot = Shot(turns=int((HERE.parents[2] / 'measured.txt').read_text()))\n", "../measured.txt", NUMBERS
     ),
-    "a file read by a module": (
-        "from mechanisms.arm.helper import turns\nshot = Shot(turns=turns())\n",
-        both(
-            write_file(CSV, "2"),
-            write_file(
-                "mechanisms/arm/helper.py",
-                "from pathlib import Path\nFILE = Path(__file__).with_name('turns.csv')\n"
-                "def turns():\n    return int(FILE.read_text())\n",
-            ),
-        ),
-        write_file(CSV, "3"),
+    "a file read by a module": reads(
+        "from mechanisms.arm.helper import turns\nshot = Shot(turns=turns())\n", CSV, NUMBERS,
+        arm__helper="from pathlib import Path\nFILE = Path(__file__).with_name('turns.csv')\n"
+        "def turns():\n    return int(FILE.read_text())\n",
     ),
-    "a file that was not there": (
-        FALLBACK.format(read="(HERE / 'turns.csv').read_text()"),
-        lambda project: None,
-        write_file(CSV, "3"),
-    ),
+    "a file that was not there": (FALLBACK.format(read=READ), nothing, write_file(CSV, "3")),
     "a file that is gone": (
-        FALLBACK.replace("turns = 2", "turns = 3").format(read="(HERE / 'turns.csv').read_text()"),
-        write_file(CSV, "2"),
+        FALLBACK.replace("turns = 2", "turns = 3").format(read=READ), write_file(CSV, "2"),
         lambda project: (project.root / CSV).unlink(),
     ),
     "whether a file exists": (
-        "shot = Shot(turns=3 if (HERE / 'long').exists() else 2)\n",
-        lambda project: None,
-        write_file("mechanisms/arm/long", ""),
+        "shot = Shot(turns=3 if (HERE / 'long').exists() else 2)\n", nothing, write_file("mechanisms/arm/long", "")
     ),
     "what is in a folder": (
         "shot = Shot(turns=len(list(HERE.glob('*.txt'))))\n",
@@ -153,15 +120,13 @@ CASES: dict[str, tuple[str, Callable[[Project], None], Callable[[Project], None]
     "a variable": ("import os\nshot = Shot(turns=int(os.environ['TURNS']))\n", setenv("2"), setenv("3")),
     "a variable that was not set": (
         "import os\nshot = Shot(turns=int(os.getenv('TURNS', '2')))\n",
-        lambda project: project.patch.delenv("TURNS", raising=False),
-        setenv("3"),
+        lambda project: project.patch.delenv("TURNS", raising=False), setenv("3"),
     ),
-    "a file given to a program": (
+    "a file given to a program": reads(
         "import subprocess\nshot = Shot(turns=int(subprocess.check_output(['cat', str(HERE / 'turns.csv')])))\n",
-        write_file(CSV, "2"),
-        write_file(CSV, "3"),
+        CSV, NUMBERS,
     ),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize(("text", "first", "then"), CASES.values(), ids=CASES.keys())

@@ -84,55 +84,37 @@ def parts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, out_root: Path) -> Pr
 
 
 BY_VALUE = "def arm(p):\n    return box(1000 * p.length)\n"
+NUMBER = "from mechanisms.arm.mechanism import WIDTH\ndef arm(p):\n    return box(40.0, WIDTH)\n"
+WIDTHS = write_file("mechanisms/arm/width.csv", "8"), write_file("mechanisms/arm/width.csv", "9")
 CASES: dict[str, tuple[str, Callable[[Project], None], Callable[[Project], None], bool]] = {
     # what parts.py adds; before the first run; the change; whether the parts are made again
     "a parameter": (BY_VALUE, nothing, LONGER, True),
     "a parameter that it does not read": (BY_VALUE, nothing, FASTER, False),
     "a number of mechanism.py that it does not use": (BY_VALUE, nothing, WIDER, False),
-    "a number of mechanism.py": (
-        "from mechanisms.arm.mechanism import WIDTH\ndef arm(p):\n    return box(40.0, WIDTH)\n",
-        nothing,
-        WIDER,
-        True,
-    ),
+    "a number of mechanism.py": (NUMBER, nothing, WIDER, True),
     "mechanism.py as a module": (
         "from mechanisms.arm import mechanism\ndef arm(p):\n    return box(40.0, mechanism.WIDTH)\n",
-        nothing,
-        WIDER,
-        True,
+        nothing, WIDER, True,
     ),
     "a method of the parameters": ("def arm(p):\n    return box(40.0, p.area() / p.length)\n", nothing, WIDER, True),
-    "parameters of its own": (
-        "P = Params()\ndef arm(p):\n    return box(1000 * P.length)\n",
-        nothing,
-        LONGER,
-        True,
-    ),
+    "parameters of its own": ("P = Params()\ndef arm(p):\n    return box(1000 * P.length)\n", nothing, LONGER, True),
     "a helper that uses mechanism.py": (
         "from mechanisms.arm.helper import width\ndef arm(p):\n    return box(40.0, width())\n",
         write_file(HELPER, "def width():\n    from mechanisms.arm.mechanism import WIDTH\n    return WIDTH\n"),
-        WIDER,
-        True,
+        WIDER, True,
     ),
     "a helper": (
         "from mechanisms.arm.helper import WIDTH\ndef arm(p):\n    return box(40.0, WIDTH)\n",
-        write_file(HELPER, "WIDTH = 8.0\n"),
-        write_file(HELPER, "WIDTH = 9.0\n"),
-        True,
+        write_file(HELPER, "WIDTH = 8.0\n"), write_file(HELPER, "WIDTH = 9.0\n"), True,
     ),
     "measured data": (
-        "import numpy as np\ndef arm(p):\n    return box(40.0, float(np.loadtxt(HERE / 'width.csv')))\n",
-        write_file("mechanisms/arm/width.csv", "8"),
-        write_file("mechanisms/arm/width.csv", "9"),
-        True,
+        "import numpy as np\ndef arm(p):\n    return box(40.0, float(np.loadtxt(HERE / 'width.csv')))\n", *WIDTHS, True,
     ),
     "a STEP file, which the kernel opens by itself": (
         "def arm(p):\n    return cq.importers.importStep(str(HERE / 'bought.step'))\n",
-        step_file(8.0),
-        step_file(9.0),
-        True,
+        step_file(8.0), step_file(9.0), True,
     ),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize(("text", "first", "change", "again"), CASES.values(), ids=CASES.keys())

@@ -20,7 +20,7 @@ from render.presets import PRESETS, WIDE
 from shared import contract
 from shared.contract.shot import Names, read_shot, refuse_unknown
 from shared.stage.paths import Out, mechanism_names
-from tests.mechanisms.every_folder import folders_and_variants
+from tests.mechanisms.author_project import folders_and_variants
 from tests.render.filling import boxes, filled, refuse_overlaps
 from tests.render.glb_file import GlbFile
 from tests.running.warm import Warm

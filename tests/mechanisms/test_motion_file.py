@@ -221,10 +221,7 @@ REFUSED: dict[str, tuple[Edit, str]] = {
         lambda d: d["joints"]["A"]["shape"].update(bodies=["ground", "leg"]),
         r"joints\.A\.shape\.bodies names 'leg'",
     ),
-    "unfit name": (
-        lambda d: d["forces"].update({"a/b": d["forces"]["spring"]}),
-        r"forces has the name 'a/b'",
-    ),
+    "unfit name": (lambda d: d["forces"].update({"a/b": d["forces"]["spring"]}), r"forces has the name 'a/b'"),
     "measures what there is not": (
         lambda d: d["forces"]["spring"].update(measures="volume"),
         r"at forces\.spring\.measures",

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+import subprocess
+import sys
 from collections import Counter
 from dataclasses import replace
 from itertools import combinations
@@ -18,9 +21,22 @@ from mechanisms.stages.clearance.stage import check
 from shared.contract import Parts, read_parts, write_motion
 from shared.contract.clearance import read_clearance
 from shared.stage.errors import UserError
-from shared.stage.paths import Out
-from tests.mechanisms.built_four_bar import make_parts, start_parts
+from shared.stage.paths import ROOT, Out
 from tools.models.motions import four_bar_motion
+
+
+def start_parts(out_root: Path, name: str = "four_bar") -> subprocess.Popen[str]:
+    """Start ``python -m mechanisms parts <name>`` into ``out_root``, in a process of its own."""
+    command, environment = [sys.executable, "-m", "mechanisms", "parts", name], os.environ | {"MBSD_OUT": str(out_root)}
+    pipe = subprocess.PIPE
+    return subprocess.Popen(command, cwd=ROOT, env=environment, stdout=pipe, stderr=pipe, text=True)
+
+
+def make_parts(out_root: Path, name: str = "four_bar") -> subprocess.CompletedProcess[str]:
+    """Run the same to its end."""
+    process = start_parts(out_root, name)
+    stdout, stderr = process.communicate()
+    return subprocess.CompletedProcess(process.args, process.returncode, stdout, stderr)
 
 
 @pytest.fixture(scope="module")

@@ -403,9 +403,7 @@ FALSE: dict[str, Callable[[WorkerParts], Any]] = {
         worker_parts.document, worker_parts.files, NOTES | {"inputs": Inputs().names()}
     ),
     "sources of the whole disk": lambda worker_parts: WorkerParts(
-        worker_parts.document,
-        worker_parts.files,
-        NOTES | {"inputs": NOTES["inputs"] | {"sources": ["/"]}},
+        worker_parts.document, worker_parts.files, NOTES | {"inputs": NOTES["inputs"] | {"sources": ["/"]}}
     ),
 }
 

@@ -19,13 +19,13 @@ from mbsd.base.running import Kept
 from mbsd.measures import final, largest
 from mbsd.model.mechanism import connections
 from mbsd.numbers.names import Number, known_numbers, number_in
-from mechanisms.stages.loading import loading
 from mechanisms.stages.solve.masses import give_masses
 from mechanisms.stages.solve.motion_file import to_motion
 from mechanisms.stages.solve.stage import solve
 from shared import contract
 from shared.stage.errors import UserError
 from shared.stage.paths import mechanism_names
+from tests.mechanisms.author_project import Author
 
 # Masses from parts to model, what is refused, and the motion as the contract has it.
 
@@ -65,17 +65,6 @@ def test_masses_of_the_parts_reach_model_and_file() -> None:
     assert max(motion.drivers["motor"].effort) > 0.2
 
 
-class _Author:
-    """A mechanism.py of the test's own."""
-
-    def __init__(self, monkeypatch: pytest.MonkeyPatch, build: Any, motion: Any = None) -> None:
-        self.build = build
-        if motion is not None:
-            self.motion = motion
-        monkeypatch.setattr(loading, "load", lambda *_: self)
-        monkeypatch.setattr(loading, "params", lambda _: None)
-
-
 def _called(name: str) -> Mechanism:
     m = _mechanism()
     m.name = name
@@ -101,7 +90,7 @@ def _called(name: str) -> Mechanism:
 def test_files_without_a_model_or_a_solution_are_reported(
     monkeypatch: pytest.MonkeyPatch, build: Any, motion: Any, words: str
 ) -> None:
-    _Author(monkeypatch, build, motion)
+    Author(monkeypatch, build, **({} if motion is None else {"motion": motion}))
     with pytest.raises(UserError, match=words):
         solve("arm", _parts("ground", "arm"))
 
@@ -114,7 +103,7 @@ def test_a_point_in_millimetres_is_told_in_a_line(
         m.trace("P", m.bodies["arm"].at(60, 30))
         return m
 
-    _Author(monkeypatch, build, lambda m, p: m.sweep(steps=4))
+    Author(monkeypatch, build, motion=lambda m, p: m.sweep(steps=4))
     solve("arm", _parts("ground", "arm"))
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("solve: warning: arm: trace P: its point (60, 30) on arm is")

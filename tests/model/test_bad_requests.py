@@ -67,10 +67,7 @@ CALLS: dict[str, tuple[str, dict[str, Any]]] = {
     "run.draw": ("t step ax frames names", {"t": 0.0}),
     "run.animate": ("path show rate fps size names progress", {"path": "run.gif", "size": (320, 180), "fps": 1.0}),
 }
-MAY: dict[str, tuple[str, ...]] = {
-    "driven.start_near(rod)": ("three",),
-    "driven.start_moving(rod)": ("three",),
-}
+MAY: dict[str, tuple[str, ...]] = {"driven.start_near(rod)": ("three",), "driven.start_moving(rod)": ("three",)}
 
 
 @pytest.mark.filterwarnings("ignore")

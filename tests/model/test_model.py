@@ -1,12 +1,27 @@
-"""Models that cannot be are refused when they are built, by name."""
+"""Models: bodies and markers, numbers of connections, and warnings that are raised once."""
 
 from __future__ import annotations
 
 import math
+import sys
+import warnings
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
-from mbsd import Mechanism, ModelError, constant_rate
+import mbsd.base.warning
+from mbsd import Mechanism, ModelError, constant_rate, harmonic
+from mbsd.base.errors import ModelWarning
+from mbsd.base.warning import PACKAGE
+from mbsd.model.joint import JointKind
+from mbsd.model.mechanism import connections
+from mbsd.numbers.names import known_numbers, number_named
+from mbsd.testing import force_kinds, joint_kinds
+from mbsd.testing.forces import example as of_force
+from mbsd.testing.joints import example as of_joint
+
+# Models that cannot be are refused when they are built, by name.
 
 
 def _two_bars() -> Mechanism:
@@ -90,3 +105,45 @@ def test_a_uniform_rod_needs_its_mass_only() -> None:
     rod = Mechanism("rod").bar("rod", 0.6, mass=2.0)
     assert rod.com == (0.3, 0.0)
     assert rod.inertia == pytest.approx(2.0 * 0.36 / 12)
+
+
+# Numbers of a model by name: every name that a thing is said to have is one.
+
+
+@pytest.mark.parametrize("kind", [*joint_kinds(), *force_kinds()], ids=lambda kind: kind.name)
+def test_every_number_that_an_example_lists_is_found(kind: Any) -> None:
+    m = of_joint(kind) if isinstance(kind, JointKind) else of_force(kind)[0]
+    for table in connections(m):
+        for name in table:
+            for key in known_numbers(m, name):
+                assert isinstance(number_named(m, f"{name}.{key}").value, float)
+
+
+def test_a_number_of_a_law_with_the_name_of_an_argument_is_reached_through_it() -> None:
+    m = Mechanism("turning frame")
+    m.body("bob", mass=1.0)
+    m.rotating_frame("frame", harmonic(2.0, 3.0), (0.3, -0.4))
+    assert number_named(m, "frame.rate.rate").value == 3.0
+    with pytest.raises(ModelError, match=r"rate\.rate"):
+        number_named(m, "frame.rate")
+    m.change("frame", rate=0.5)
+    assert number_named(m, "frame.rate").value == 0.5
+
+
+# Warnings point at the user's line on every Python.
+
+
+DEEP = "def finds(warn):\n    warn('off', ModelWarning)\ndef asked(warn):\n    finds(warn)\n"
+
+
+@pytest.mark.parametrize("version", [(3, 11), (3, 12)])
+def test_a_warning_names_the_file_outside_the_package(
+    monkeypatch: pytest.MonkeyPatch, version: tuple[int, int]
+) -> None:
+    names: dict[str, Any] = {"ModelWarning": ModelWarning}
+    exec(compile(DEEP, f"{PACKAGE[0]}found.py", "exec"), names)
+    monkeypatch.setattr(mbsd.base.warning, "sys", SimpleNamespace(version_info=version, _getframe=sys._getframe))
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        names["asked"](mbsd.base.warning.warn)
+    assert [(warning.filename, str(warning.message)) for warning in told] == [(__file__, "off")]

@@ -9,23 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mbsd import LimitError, Mechanism, ModelError, constant_rate
+from mbsd import LimitError, Mechanism, ModelError, constant_rate, extend
 from mbsd.drawing.topology import sign_of
-from mbsd.extend import (
-    CONSTANT,
-    TURN,
-    Element,
-    ForceKind,
-    JointKind,
-    Limits,
-    Marker,
-    Term,
-    add_force,
-    amount_given,
-    join,
-    limits_given,
-    register_joint,
-)
 from mbsd.model.force import FORCE_KINDS
 from mbsd.model.joint import KINDS
 from mbsd.testing import check_joint, contact_kinds, force_kinds, joint_kinds
@@ -35,18 +20,20 @@ from tools.models.guided import geneva
 
 
 @pytest.fixture
-def kinds(monkeypatch: pytest.MonkeyPatch) -> dict[str, JointKind]:
+def kinds(monkeypatch: pytest.MonkeyPatch) -> dict[str, extend.JointKind]:
     """A pin and a guide under other names, with the signs of those of the solver."""
     monkeypatch.setattr("mbsd.model.joint.KINDS", dict(KINDS))
     made = {}
     for name, of in (("hinge", "revolute"), ("sleeve", "prismatic")):
-        kind = made[name] = register_joint(
-            JointKind(name, KINDS[of].constraints, example=lambda m, i, j, name=name: _add(name, m, i, j), sign=of)
+        kind = made[name] = extend.register_joint(
+            extend.JointKind(
+                name, KINDS[of].constraints, example=lambda m, i, j, name=name: _add(name, m, i, j), sign=of
+            )
         )
 
         @kind.adds
-        def add(m, name: str, i: Marker, j: Marker, limits: Limits = None, kind=kind):
-            return join(m, kind, name, i, j, None, **limits_given(m, name, limits))
+        def add(m, name: str, i: extend.Marker, j: extend.Marker, limits: extend.Limits = None, kind=kind):
+            return extend.join(m, kind, name, i, j, None, **extend.limits_given(m, name, limits))
 
     def _add(name, m, i, j):
         return made[name].add(m, "example", i, j)
@@ -54,7 +41,7 @@ def kinds(monkeypatch: pytest.MonkeyPatch) -> dict[str, JointKind]:
     return made
 
 
-def pendulum(kind: JointKind, **more) -> Mechanism:
+def pendulum(kind: extend.JointKind, **more) -> Mechanism:
     m = Mechanism("pendulum")
     rod = m.bar("rod", 0.5, mass=1.0)
     assert kind.add is not None
@@ -87,7 +74,9 @@ def test_forces_know_where_they_act() -> None:
     }  # fmt: skip
 
 
-def test_a_pin_of_ones_own_has_friction_stops_limits_and_the_sign(kinds: dict[str, JointKind], tmp_path: Path) -> None:
+def test_a_pin_of_ones_own_has_friction_stops_limits_and_the_sign(
+    kinds: dict[str, extend.JointKind], tmp_path: Path
+) -> None:
     own, usual = pendulum(kinds["hinge"]), pendulum(KINDS["revolute"])
     for m in (own, usual):
         m.friction("rubbing", "A", 0.2, radius=0.02, sticks=True)
@@ -105,7 +94,7 @@ def test_a_pin_of_ones_own_has_friction_stops_limits_and_the_sign(kinds: dict[st
         driven.sweep(2.0)
 
 
-def test_a_guide_of_ones_own_has_stops_along_it(kinds: dict[str, JointKind]) -> None:
+def test_a_guide_of_ones_own_has_stops_along_it(kinds: dict[str, extend.JointKind]) -> None:
     m = Mechanism("slider", gravity=None)
     block = m.body("block", 1.0, inertia=1.0)
     sleeve = kinds["sleeve"].add
@@ -122,33 +111,33 @@ def test_a_guide_of_ones_own_has_stops_along_it(kinds: dict[str, JointKind]) -> 
 
 def test_a_torque_of_ones_own_takes_an_effort(monkeypatch: pytest.MonkeyPatch) -> None:
     """The effort of a driver, put in the place of its magnitude, gives the driver's motion."""
-    kind = ForceKind(
+    kind = extend.ForceKind(
         "servo",
-        lambda force: (Element(TURN, (Term(CONSTANT, force.params.get("moment", 0.0)),)),),
+        lambda force: (extend.Element(extend.TURN, (extend.Term(extend.CONSTANT, force.params.get("moment", 0.0)),)),),
         example=lambda m, i, j: None,
         effort="moment",
     )
     monkeypatch.setitem(FORCE_KINDS, "servo", kind)
     m = pendulum(KINDS["revolute"])
-    params, laws = amount_given(m, "s", "moment", 1.0)
-    add_force(m, kind, "s", m.ground.origin, m.bodies["rod"].origin, params, laws, same_body=True)
+    params, laws = extend.amount_given(m, "s", "moment", 1.0)
+    extend.add_force(m, kind, "s", m.ground.origin, m.bodies["rod"].origin, params, laws, same_body=True)
     assert m.with_efforts(s=2.5).forces["s"].params == {"moment": 2.5}
     m.spring("spring", m.ground.at(1.0, 0.0), m.bodies["rod"].end, 10.0)
     with pytest.raises(ModelError, match="force 'spring' is a spring; only drivers, torques, forces and actuators"):
         m.with_efforts(spring=1.0)
 
 
-def maltese(**own) -> JointKind:
+def maltese(**own) -> extend.JointKind:
     """A Geneva whose argument has another name."""
     numbers = {"numbers": lambda params: [(params["stations"], params["radius"])], "problem": None}
     return replace(KINDS["geneva"], name="maltese", **numbers, **own)
 
 
 def test_a_wheel_that_looks_alike_after_a_turn_has_no_other_way_to_close() -> None:
-    def told(kind: JointKind) -> list[str]:
+    def told(kind: extend.JointKind) -> list[str]:
         m = geneva(4, start=1.0)
         index = m.joints.pop("index")
-        join(m, kind, "index", index.i, index.j, None, stations=4, radius=index.params["radius"])
+        extend.join(m, kind, "index", index.i, index.j, None, stations=4, radius=index.params["radius"])
         m.start_near(wheel=0.0)
         return [finding.name for finding in m.check()]
 
@@ -157,8 +146,8 @@ def test_a_wheel_that_looks_alike_after_a_turn_has_no_other_way_to_close() -> No
 
 
 def test_a_wrong_symmetry_is_found() -> None:
-    def wheel(m, i: Marker, j: Marker):
-        return join(m, wrong, "example", i, j, None, stations=5, radius=0.3)
+    def wheel(m, i: extend.Marker, j: extend.Marker):
+        return extend.join(m, wrong, "example", i, j, None, stations=5, radius=0.3)
 
     wrong = maltese(example=wheel, symmetry=lambda params: 4)
     with pytest.raises(AssertionError, match=r"maltese, seed 0: Phi after a turn of body j by 1/4, row 0 \(geneva\)"):
@@ -167,7 +156,7 @@ def test_a_wrong_symmetry_is_found() -> None:
 
 def test_a_place_of_contact_that_does_not_exist_is_refused() -> None:
     with pytest.raises(ValueError, match="touching is 'rim'; it must be one of line, curve, discs, place, or empty"):
-        register_joint(JointKind("odd", ("point",), example=lambda m, i, j: None, touching="rim"))
+        extend.register_joint(extend.JointKind("odd", ("point",), example=lambda m, i, j: None, touching="rim"))
 
 
 def test_the_solver_compares_no_name_of_a_kind() -> None:

@@ -21,10 +21,10 @@ from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.solve.motion_file import to_motion
 from mechanisms.stages.solve.skeleton_file import moving_of
 from render.film.vectors import torques, vectors
+from render.insights.loops import loops
 from render.magnitudes import crank_of
 from render.plots import plots_of
 from render.plots.figures import WHOLE
-from render.report.transmission import loops
 from render.view.payload import payload
 from shared.contract import Motion
 from shared.contract.shot import Quantity

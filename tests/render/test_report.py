@@ -13,9 +13,10 @@ import pytest
 from mbsd import Mechanism, angle_reaches, constant_rate
 from mechanisms.stages.solve.motion_file import to_motion
 from render import report
+from render.insights.loops import loops
 from render.magnitudes import floors
 from render.report.facts import facts
-from render.report.transmission import event_section, loops
+from render.report.transmission import event_section
 from render.report.travel import releases, stroke
 from render.report.written import Amounts, degrees, speed, turning, written
 from shared.contract import EventMark, Motion, Provenance, write_motion

@@ -8,12 +8,12 @@ import pytest
 
 PARTS = "tests/mechanisms/automatic"
 SAMPLES: dict[str, tuple[str, ...]] = {
-    f"{PARTS}/shafts/test_engines.py::test_a_shaft_and_what_it_carries_turn_without_force_and_couple": (
+    f"{PARTS}/test_engines.py::test_a_shaft_and_what_it_carries_turn_without_force_and_couple": (
         *("I1-*", "V2-*", "flat-4-*"),
     ),
-    f"{PARTS}/shafts/test_engines.py::test_pistons_stay_in_their_liners_and_clear_of_the_shaft": ("SINGLE", "V_TWO"),
-    f"{PARTS}/shafts/test_engines.py::test_other_radial_engines_pass": ("3",),
-    f"{PARTS}/shafts/test_machines_along.py::test_engines_with_several_valves_pass": ("I4-1",),
+    f"{PARTS}/test_engines.py::test_pistons_stay_in_their_liners_and_clear_of_the_shaft": ("SINGLE", "V_TWO"),
+    f"{PARTS}/test_engines.py::test_other_radial_engines_pass": ("3",),
+    f"{PARTS}/test_machines_along.py::test_engines_with_several_valves_pass": ("I4-1",),
     f"{PARTS}/test_stands.py::test_in_a_turned_world_it_is_the_same_stand": ("2.5",),
     f"{PARTS}/test_stands.py::test_no_stand_tips_before_ten_degrees": ("rocker", "hanging"),
     f"{PARTS}/test_stands.py::test_what_moves_weighs_the_same_however_it_stands": ("wall",),

@@ -1,4 +1,4 @@
-"""``python -m tools.browsers``: the page in Firefox and in Safari's engine, from the disk, as people use it.
+"""``python -m tools.browsers``: use the page in Firefox and in Safari's engine, from the disk.
 
 --name four_bar,pendulum   the pages of these mechanisms, which make view-<name> has made; without it a small four-bar
 --only firefox             in this browser alone: firefox, webkit

@@ -1,4 +1,4 @@
-"""A remotely controlled browser: what it can do, actions of a hand in WebDriver's words, places of a page, a screen."""
+"""A remotely controlled browser: actions of a hand in WebDriver's words, places of a page, a screen."""
 
 from __future__ import annotations
 

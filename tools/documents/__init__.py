@@ -1,1 +1,1 @@
-"""Builders of documents: pictures, tables, films and the lecture of docs/, by ``python -m tools.documents``."""
+"""Builders of pictures, tables, films and the lecture of docs/, by ``python -m tools.documents``."""

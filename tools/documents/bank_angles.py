@@ -1,4 +1,6 @@
-"""Bank angles of V engines: a map of every family, a degree apart, with the torque of its gas (``make study-engines``).
+"""Bank angles of V engines: a map of every family, a degree apart (``make study-engines``).
+
+The torque of the gas is of a four-stroke cycle.
 
 Writes out/engines/bank_angles.csv, out/engines/engines.md and the tables of docs/engines.md.
 """
@@ -17,6 +19,7 @@ from mbsd.machines.engines.bank_angles import ORDERS, BankAngles, all_families
 from mbsd.machines.engines.firing import firing
 from mbsd.machines.engines.free_forces import free_forces
 from mbsd.machines.engines.layout import Layout, named
+from shared.stage.console import markdown_table
 from shared.stage.files import write_bytes
 from shared.stage.paths import out_root
 from tools.documents.pages import DOCS, replaced
@@ -26,6 +29,7 @@ RATIO = 0.28
 CYCLE = four_stroke(10.0, heat_density=2e6)
 LAYOUTS = "<!-- layouts: written by make study-engines -->", "<!-- end of layouts -->"
 ANGLES = "<!-- bank angles: written by make study-engines -->", "<!-- end of bank angles -->"
+SIZES = ("force, order 1", "order 2", "couple, order 1", "order 2")
 FIXED = ("I1", "I2", "I3", "I4", "I5", "I6", "flat-2", "flat-4", "flat-6", "radial-5")
 
 
@@ -43,56 +47,41 @@ def main(words: Sequence[str]) -> None:
 
 
 def rows(maps: list[BankAngles]) -> str:
-    """Return CSV of largest forces (m r w^2) and couples (times the spacing), without and with counterweights."""
+    """Return CSV of largest forces and couples over the bank angle.
+
+    Forces are in m r w^2, couples times the spacing, both without and with counterweights.
+    """
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
-    named = [
-        f"{what} {order}{extra}"
-        for extra in ("", ", counterweights")
-        for what in ("force", "couple")
-        for order in ORDERS
-    ]
-    table.writerow(["engine", "bank angle (deg)", *named, "uneven (deg)", "firing order", "torque ripple"])
+    extras = ("", ", counterweights")
+    sizes = [f"{what} {order}{extra}" for extra in extras for what in ("force", "couple") for order in ORDERS]
+    table.writerow(["engine", "bank angle (deg)", *sizes, "uneven (deg)", "firing order", "torque ripple"])
     for chart in maps:
         plain, held = chart.left(), chart.left(counterweights=True)
         for k, angle in enumerate(chart.angle):
             sizes = [part[k] for left in (plain, held) for part in (left.force, left.couple)]
             numbers = [f"{value:.9g}" for part in sizes for value in part]
             ripple = "" if chart.ripple is None else f"{chart.ripple[k]:.6g}"
-            table.writerow(
-                [
-                    chart.family.name,
-                    f"{angle:g}",
-                    *numbers,
-                    f"{chart.uneven[k]:.6g}",
-                    "-".join(map(str, chart.order[k])),
-                    ripple,
-                ]
-            )
+            fires = f"{chart.uneven[k]:.6g}", "-".join(map(str, chart.order[k]))
+            table.writerow([chart.family.name, f"{angle:g}", *numbers, *fires, ripple])
     return text.getvalue()
 
 
 def layout_table() -> str:
     """Return forces and couples by order of the layouts that have no bank angle to choose."""
-    lines = [
-        "| layout | throws | force, order 1 | order 2 | couple, order 1 | order 2 | fires |",
-        "|---|---|---|---|---|---|---|",
-    ]
+    rows = []
     for name in FIXED:
         of = named(name)
         free = free_forces(of)
         sizes = [size(free.force.largest[k], free.force.smallest[k]) for k in (0, 1)]
         sizes += [size(free.couple.largest[k], free.couple.smallest[k]) for k in (0, 1)]
-        lines.append(f"| {name} | {_throws(of)} | {' | '.join(sizes)} | {_fires(of)} |")
-    return "\n".join(lines)
+        rows.append((name, _throws(of), *sizes, _fires(of)))
+    return "\n".join(markdown_table(("layout", "throws", *SIZES, "fires"), rows))
 
 
 def angle_table(maps: Sequence[BankAngles]) -> str:
     """Return the best angle of each family, what is left there with counterweights, and why."""
-    lines = [
-        "| engine | best angle | force, order 1 | order 2 | couple, order 1 | order 2 | torque ripple | why |",
-        "|---|---|---|---|---|---|---|---|",
-    ]
+    rows = []
     for chart in maps:
         k = int(np.argmin(np.abs(chart.angle - chart.best)))
         left = chart.left(counterweights=True)
@@ -100,8 +89,8 @@ def angle_table(maps: Sequence[BankAngles]) -> str:
         every = len(chart.angle) > 1 and chart.left(True).rank(0).max() < 1e-9 and chart.left(True).rank(1).max() < 1e-9
         best = f"any, such as {chart.best:g}" if every else f"{chart.best:g}"
         ripple = "" if chart.ripple is None else f"{chart.ripple[k]:.2g}"
-        lines.append(f"| {chart.family.name} | {best} | {' | '.join(sizes)} | {ripple} | {' '.join(chart.reasons())} |")
-    return "\n".join(lines)
+        rows.append((chart.family.name, best, *sizes, ripple, " ".join(chart.reasons())))
+    return "\n".join(markdown_table(("engine", "best angle", *SIZES, "torque ripple", "why"), rows))
 
 
 def size(largest: float, smallest: float | None = None) -> str:

@@ -1,4 +1,4 @@
-"""Integrators measured: docs/integrators.json and the tables of docs/integrators.md (``make integrators``)."""
+"""Integrators measured: docs/integrators.json and its page's tables (``make integrators``)."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.runs.motion import integrate
 from mbsd.dynamics.simulate import integrator_named
 from mbsd.dynamics.state import ACCEPTED, EVALUATIONS
+from shared.stage.console import markdown_table
 from tools.documents.pages import DOCS, replaced
 
 # Mechanisms on which integrators are measured: an open chain, a closed chain, and that with a stiff joint.
@@ -60,7 +61,10 @@ def four_bar(pin: bool = True) -> Mechanism:
 
 
 def stiff_four_bar() -> Mechanism:
-    """The same with a stiff bush for the pin C: its damper alone asks explicit methods for steps below 0.01 ms."""
+    """Return the four-bar with a stiff bush for the pin C.
+
+    Its damper alone asks explicit methods for steps below 0.01 ms.
+    """
     m = four_bar(pin=False)
     closed = four_bar().simulate(1e-3, steps=1)
     m.start_near(**{name: math.degrees(float(closed.body(name).theta[0])) for name in ("crank", "coupler", "rocker")})
@@ -155,7 +159,10 @@ def order(rungs: list[Rung]) -> float:
 
 
 def cost(rungs: list[Rung]) -> tuple[float, bool]:
-    """Seconds for an error of TARGET, between two rungs; or those of the longest run, where none gets there."""
+    """Return the seconds for an error of TARGET, between two rungs.
+
+    Where none gets there: those of the longest run, and False.
+    """
     before = None
     for rung in rungs:
         if rung.error <= TARGET:
@@ -224,7 +231,10 @@ def swing(m: Mechanism) -> tuple[float, float]:
 
 
 def one(m: Mechanism, length: float, scale: float, name: str) -> dict[str, Any]:
-    """Largest energy errors so far, as parts of ``scale`` (J); evaluations a period of ``length`` (s); seconds."""
+    """Return the largest energy errors so far, evaluations a period and seconds of one run.
+
+    Errors are parts of ``scale`` (J); a period is ``length`` (s).
+    """
     method, setting = integrator_named(m.name, name.partition(",")[0]), RUNS[name]
     times = np.linspace(0.0, PERIODS * length, int(PERIODS * A_PERIOD) + 1)
     ready = prepare_dynamics(m, 0.0, float(times[-1]))
@@ -260,7 +270,7 @@ def measure_long_runs(tell: Callable[[str], None]) -> dict[str, dict[str, dict[s
 # Integrators measured: docs/integrators.json and the tables of docs/integrators.md (``make integrators``).
 #
 # Orders and costs take two minutes, ten thousand periods by each method another three. The picture is drawn from the
-# numbers by figures/pages/integrators.py. Methods of packages that are not installed keep their old numbers.
+# numbers by figures/simulations.py. Methods of packages that are not installed keep their old numbers.
 
 
 FILE = DOCS / "integrators.json"
@@ -293,15 +303,12 @@ def with_tables(page: str, measured: dict[str, Any]) -> str:
 
 def accuracy_table(rows: dict[str, dict[str, Any]]) -> str:
     """Return the table of orders and costs."""
-    lines = [
-        "| method | order | measured, pendulum | measured, four-bar | cost, four-bar | cost, stiff bush |",
-        "|---|---|---|---|---|---|",
-    ]
+    head = ("method", "order", "measured, pendulum", "measured, four-bar", "cost, four-bar", "cost, stiff bush")
+    cells = []
     for name, row in rows.items():
-        stated = row["stated"] or "varies"
-        costs = " | ".join(_ratio(*row[which]) for which in ("cost", "stiff cost"))
-        lines.append(f"| `{name}` | {stated} | {row['pendulum']} | {row['four-bar']} | {costs} |")
-    return "\n".join(lines)
+        orders = row["stated"] or "varies", row["pendulum"], row["four-bar"]
+        cells.append((f"`{name}`", *map(str, orders), *(_ratio(*row[which]) for which in ("cost", "stiff cost"))))
+    return "\n".join(markdown_table(head, cells))
 
 
 def _ratio(value: float, reached: bool) -> str:
@@ -312,10 +319,8 @@ def _ratio(value: float, reached: bool) -> str:
 def long_table(runs: dict[str, dict[str, Any]]) -> str:
     """Return the table of energy errors after all periods, and costs."""
     pendulum, four_bar = runs["pendulum"], runs["four-bar"]
-    lines = [
-        "| method | setting | energy error, pendulum | energy error, four-bar | evaluations a period | time, both |",
-        "|---|---|---|---|---|---|",
-    ]
+    errors = "energy error, pendulum", "energy error, four-bar"
+    cells = []
     unit = sum(run["dop853"]["seconds"] for run in runs.values())
     for name, setting in RUNS.items():
         setting_words = (
@@ -323,8 +328,7 @@ def long_table(runs: dict[str, dict[str, Any]]) -> str:
         ).replace("e-0", "e-")
         first, other = pendulum[name], four_bar[name]
         seconds = (first["seconds"] + other["seconds"]) / unit
-        lines.append(
-            f"| `{name.partition(',')[0]}` | {setting_words} | {first['errors'][-1]:.0e} | {other['errors'][-1]:.0e} "
-            f"| {first['evaluations']}, {other['evaluations']} | {seconds:.2g} |"
-        )
-    return "\n".join(lines)
+        sizes = (f"{run['errors'][-1]:.0e}" for run in (first, other))
+        evaluations = f"{first['evaluations']}, {other['evaluations']}"
+        cells.append((f"`{name.partition(',')[0]}`", setting_words, *sizes, evaluations, f"{seconds:.2g}"))
+    return "\n".join(markdown_table(("method", "setting", *errors, "evaluations a period", "time, both"), cells))

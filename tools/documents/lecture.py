@@ -35,7 +35,10 @@ def code(notebook: dict[str, Any]) -> list[str]:
 
 
 def executed(notebook: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Return the notebook with the outputs of a run in ``folder``. Raises UserError with the traceback of a cell."""
+    """Return the notebook with the outputs of a run in ``folder``.
+
+    Raises UserError with the traceback of a cell.
+    """
     import nbformat
     from nbclient import NotebookClient
     from nbclient.exceptions import CellExecutionError

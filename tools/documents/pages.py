@@ -1,4 +1,4 @@
-"""Pages of docs/ whose parts are computed: text between two markers, and files that are written where they changed."""
+"""Pages of docs/ whose parts are computed: text between two markers, and files that change."""
 
 from __future__ import annotations
 

@@ -22,6 +22,7 @@ from mbsd import Mechanism, four_stroke, study
 from mbsd.machines.engines.block import Block, mount_response, mounts_of_frequency
 from mbsd.machines.engines.engine import engine
 from mbsd.machines.engines.run_up import run_up
+from shared.stage.console import markdown_table
 from shared.stage.files import write_bytes
 from shared.stage.paths import out_root
 from tools.documents.figures.look import BLUE, GREEN, MOVED, PURPLE, QUIET, STYLE, plain
@@ -72,7 +73,10 @@ def main(words: Sequence[str]) -> None:
 
 
 def build(layout: str, frequency: float, damping_ratio: float, rate: float) -> Mechanism:
-    """Return the engine whose speed rises by ``rate`` (rpm/s) from rest, without weight, which only shifts its rest."""
+    """Return the engine whose speed rises by ``rate`` (rpm/s) from rest.
+
+    It has no weight, which only shifts its rest.
+    """
     mounts = mounts_of_frequency(MASS, frequency, PLACES, damping_ratio)
     block = Block(MASS, INERTIA, mounts, motor_on="ground")
     m = engine(layout, **SIZE, gas=four_stroke(10.0), block=block, acceleration=rate / RPM, name=layout)
@@ -81,7 +85,7 @@ def build(layout: str, frequency: float, damping_ratio: float, rate: float) -> M
 
 
 def measure(m: Mechanism) -> dict[str, float]:
-    """Return the largest displacement of the shaft's axis (mm) and angle of the block (mrad), with their speeds.
+    """Return the largest displacement (mm) of the shaft and angle (mrad) of the block, with their speeds.
 
     ``steady``: the same at constant speed by linear theory. ``expected``: what of it a single mode run through at this
     rate reaches in closed form. Speeds in rpm.
@@ -124,12 +128,12 @@ def last_speed(m: Mechanism) -> float:
 
 
 def table(runs: Any) -> str:
-    """Return the largest displacement and angle with their speeds, of the runs (pandas) with one damping ratio."""
-    rates = " | ".join(f"{rate:g} rpm/s" for rate in RATES)
-    lines = [
-        f"| engine | mounts | displacement, steady | {rates} | angle, steady | {rates} |",
-        f"|{'---|' * (4 + 2 * len(RATES))}",
-    ]
+    """Return the largest displacement and angle with their speeds, of runs with one damping ratio.
+
+    ``runs`` is a table of pandas.
+    """
+    rates = [f"{rate:g} rpm/s" for rate in RATES]
+    lines = []
     shown = runs[runs["damping_ratio"] == DAMPING_RATIO]
     for (layout, frequency), rows in shown.groupby(["layout", "frequency"], sort=False):
         cells = [str(layout), f"{frequency:g} Hz"]
@@ -137,8 +141,9 @@ def table(runs: Any) -> str:
         for name, unit in (("displacement", "mm"), ("angle", "mrad")):
             cells.append(_cell(at.loc[RATES[0]], f"steady {name}", unit))
             cells += [_cell(at.loc[rate], name, unit) for rate in RATES]
-        lines.append(f"| {' | '.join(cells)} |")
-    return "\n".join(lines)
+        lines.append(cells)
+    head = ("engine", "mounts", "displacement, steady", *rates, "angle, steady", *rates)
+    return "\n".join(markdown_table(head, lines))
 
 
 def _cell(row: Any, name: str, unit: str) -> str:
@@ -146,7 +151,7 @@ def _cell(row: Any, name: str, unit: str) -> str:
 
 
 def picture(runs: Any) -> Figure:
-    """Draw displacement and angle over the rate, as parts of the steady ones, simulated and in closed form."""
+    """Draw displacement and angle over the rate, as parts of the steady ones, beside the closed form."""
     with mpl.rc_context(STYLE):  # pyright: ignore[reportArgumentType]
         layouts = list(dict.fromkeys(runs["layout"]))
         figure = Figure(figsize=(2.6 * len(layouts), 7.6), layout="constrained")

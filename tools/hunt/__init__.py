@@ -1,1 +1,1 @@
-"""The hunt: random mechanisms of all kinds, each solved again in other words; see :mod:`tools.hunt.case`."""
+"""The hunt: random mechanisms of all kinds, each solved again in other words (see ``case.py``)."""

@@ -1,4 +1,4 @@
-"""``python -m tools.hunt``: random mechanisms of all kinds, each solved again in other words; who disagrees is wrong.
+"""``python -m tools.hunt``: random mechanisms, each solved again in other words; no two may differ.
 
 --n 1000 --seed 1     a thousand cases, the same each time; on all cores unless --jobs says otherwise
 --kind NAME           of one kind of mechanism

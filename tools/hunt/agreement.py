@@ -117,8 +117,11 @@ Numbers = dict[str, np.ndarray]
 
 @dataclass
 class Words:
-    """How a description differs from the first: frames of bodies and ground as in ``seen_from``; efforts with the
-    other sign; joints whose bodies are exchanged show by their names; a mirror image; other units."""
+    """The difference of a description from the first one.
+
+    Frames of bodies and ground as in ``seen_from``; efforts with the other sign; joints whose bodies are exchanged show
+    by their names; a mirror image; other units.
+    """
 
     frames: Mapping[str, Pose] = field(default_factory=dict)
     turned_round: frozenset[str] = frozenset()

@@ -1,4 +1,4 @@
-"""A free motion under way: the first solution, how errors grow in it, and how others are compared with it."""
+"""A free motion under way: its first solution, the growth of errors, and comparisons with others."""
 
 from __future__ import annotations
 
@@ -56,7 +56,10 @@ class Free:
         return "contacts" in self.subject.traits
 
     def remembers(self, k: int) -> bool:
-        """Return True if a contact acts at output k whose damping depends on its first speed, which no start has."""
+        """Return True if a contact acts at output k whose damping depends on its first speed.
+
+        No start has that speed.
+        """
         first = self.first
         if first is None or first.approached is None:
             return False

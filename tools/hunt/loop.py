@@ -90,7 +90,10 @@ def follow(
     arrived: Iterable[CaseResult],
     add: Callable[[CaseResult], list[str]],
 ) -> None:
-    """Take in n results; ``add`` counts one and gives what is to be shown of it. Ctrl-C ends it with the report."""
+    """Take in n results; ``add`` counts one and gives what is to be shown of it.
+
+    Ctrl-C ends it with the report.
+    """
     began = written = time.monotonic()
     name, stopped = program.rpartition(".")[2].replace("_", "-"), False
     try:

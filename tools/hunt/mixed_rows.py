@@ -1,4 +1,4 @@
-"""Many simulations, or designs, that differ in numbers of all kinds, beside each of them alone: every quantity.
+"""Batches whose rows differ in numbers of all kinds, beside each row alone: every quantity.
 
 Rows of one chunk differ in lengths, positions, masses, laws, traced points, starts and velocities at once, so that a
 number which the compiled loop reads from another row shows. Bounds are those of two free motions (agreement.py):
@@ -91,7 +91,10 @@ def quantity_names(sol: Solution) -> dict[str, Quantity]:
 def beside_single_ones(
     name: str, rows: Rows, duration: float, tolerance: float, nudged: Callable[[Mechanism], Mechanism]
 ) -> Outcome:
-    """All quantities of all rows beside single simulations; ``nudged`` gives the mechanism with other velocities."""
+    """Compare all quantities of all rows with single simulations.
+
+    ``nudged`` gives the mechanism with other velocities.
+    """
     times = np.linspace(0.0, duration, OUTPUTS + 1)
     first = next((sol for sol in map(_simulated(rows, times, tolerance), range(len(rows.values))) if sol), None)
     if first is None:

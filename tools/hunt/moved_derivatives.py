@@ -1,4 +1,4 @@
-"""Derivatives of a machine that is elsewhere, mirrored, in other units, reordered or renamed, beside its own.
+"""Derivatives of a mechanism moved, mirrored, in other units or renamed, beside its own.
 
 Asked for are places and turning of some bodies and the kinetic energy, by places of joints and by masses, of few
 outputs. With the turn and mirror R of the world, and lengths and masses L and M times as large,

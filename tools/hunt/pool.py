@@ -1,4 +1,6 @@
-"""Cases on several processes, each bounded in time: a process that hangs is killed, its case counted, another started.
+"""Cases on several processes, each bounded in time.
+
+A process that hangs is killed, its case counted, and another process started.
 
 The clock of a case stands still while numba compiles, which happens once on a machine for each kind of mechanism.
 """

@@ -1,4 +1,4 @@
-"""Variations that driven and free motions share: the same mechanism in other words, or kept, loaded and changed."""
+"""Variations that driven and free motions share: the same mechanism in other words, kept or changed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Results that must be the same to the last bit: of a model changed and one built so, of a pickled solution."""
+"""Results that must agree to the last bit: a changed model and a fresh one, a pickled solution."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ from tools.random_mechanisms.subject import attempt
 
 
 def there_and_back(m: Mechanism, rng: np.random.Generator, solve: Callable[[], Any]) -> bool:
-    """Change a random number by up to a half, solve whatever comes of it, change it back; False if there is none."""
+    """Change a random number by up to a half, solve whatever comes of it, and change it back.
+
+    Returns False if there is none.
+    """
     changes: list[tuple[str, str, float]] = []
     for name, body in m.bodies.items():
         if name != "ground" and body.mass > 0:
@@ -67,7 +70,7 @@ def pickled(name: str, sol: Solution | None) -> Outcome:
 
 
 def changed_differs(m: Mechanism, rng: np.random.Generator) -> str | None:
-    """Return how a model built with other numbers and changed to those of ``m`` differs; "" if it does not.
+    """Return how a model changed to the numbers of ``m`` differs from one built so; "" if it does not.
 
     Numbers that may follow from others are left out now and then. None where there is nothing to change, or no file
     could hold the model.

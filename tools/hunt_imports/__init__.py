@@ -1,1 +1,1 @@
-"""Damaged files of other programs: each is imported or refused in a sentence, and what is written loads."""
+"""Damaged files of other programs: each is imported or refused in a sentence, and results load."""

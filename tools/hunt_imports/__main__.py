@@ -1,4 +1,4 @@
-"""``python -m tools.hunt_imports``: damaged files of other programs, and what ``mbsd import`` makes of them.
+"""``python -m tools.hunt_imports``: damaged files of other programs, and how they are imported.
 
 --n 1000 --seed 1     a thousand cases, the same each time; on all cores unless --jobs says otherwise
 --kind NAME           of one kind of file: asmt, dxf, json, linkage2, pmks, pmks+ (addresses), txt

@@ -1,4 +1,4 @@
-"""One damaged file: imported as ``mbsd import`` does, up to the point where it would write the mechanism.
+"""One damaged file, imported as ``mbsd import`` does until it would write the mechanism.
 
 agreed     read, and what would be written loads, builds and can be looked at
 refused    a UserError; its reason without the numbers and names of the case

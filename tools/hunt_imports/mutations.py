@@ -1,4 +1,4 @@
-"""Files and addresses that are nearly those of other programs: samples with numbers, names or nesting gone wrong."""
+"""Files nearly those of other programs: samples with numbers, names or nesting gone wrong."""
 
 from __future__ import annotations
 

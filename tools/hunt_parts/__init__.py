@@ -1,1 +1,1 @@
-"""Automatic parts for random mechanisms of all kinds: do they fit, and is what is refused refused for a reason."""
+"""Automatic parts for random mechanisms of all kinds: whether they fit, and reasons of refusals."""

@@ -1,4 +1,4 @@
-"""``python -m tools.hunt_parts``: automatic parts for random mechanisms, and the proof that none touch.
+"""``python -m tools.hunt_parts``: automatic parts of random mechanisms, and proof that none touch.
 
 --n 1000 --seed 1     a thousand cases, the same each time; on all cores unless --jobs says otherwise
 --kind NAME           of one kind of mechanism

@@ -1,4 +1,4 @@
-"""One case: a random mechanism of the hunt, its motion, its automatic parts, and the proof that none touch."""
+"""One case: a random mechanism, its motion, its automatic parts, and the proof that none touch."""
 
 from __future__ import annotations
 
@@ -46,7 +46,10 @@ def run(seed: int, name: str | None = None, solids: bool = True) -> CaseResult:
 
 
 def _drawn(seed: int, name: str | None) -> tuple[str, Subject]:
-    """The mechanism of a seed, and its kind; of one of :data:`OWN` seeds, one that asks for parts in particular."""
+    """Return the mechanism of a seed, and its kind.
+
+    Of one of :data:`OWN` seeds it is one that asks for parts in particular.
+    """
     if name in own_kinds.KINDS:
         return name, own_kinds.KINDS[name].build(np.random.default_rng([seed, 72]))
     if name is None and seed % OWN == OWN // 2:

@@ -137,7 +137,10 @@ def swinging_lever(m: Mechanism):
 
 
 def two_slides(turned_round: bool, slot: bool = False) -> Mechanism:
-    """Blocks on a lever and on ground, pinned to each other; or a block on a lever with its pin in a slot of ground."""
+    """Return blocks on a lever and on ground, pinned to each other.
+
+    Or a block on a lever with its pin in a slot of ground.
+    """
     m = Mechanism("two slides")
     carrier = swinging_lever(m)
     first = m.body("first", 1.0, com=(0.02, 0.01), inertia=0.1)

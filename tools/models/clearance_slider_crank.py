@@ -1,4 +1,4 @@
-"""The slider-crank with a clearance joint between rod and slider of Flores et al., and its equations in other words.
+"""The slider-crank with a clearance joint of Flores et al., and its equations in other words.
 
 Unknown are the rod's angle b and the slider's place x; the crank turns at a given rate. P is the rod's end, S the
 slider's pin, n from P to S; the journal is the slider's, C = S + R_j n where they touch.

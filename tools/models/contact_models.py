@@ -1,4 +1,4 @@
-"""Models and checks of contacts: a ball, a disc and a box on a floor, times of events, and the balance of energy."""
+"""Models and checks of contacts: balls, discs and a box on a floor, times of events, energy."""
 
 from __future__ import annotations
 

@@ -16,7 +16,9 @@ UP = math.pi / 2
 def slider_crank(
     cycle: GasCycle | None = None, rate: float | None = 200.0, start: float = UP, mounted: bool = False, **more: Any
 ) -> Mechanism:
-    """A crank, a rod and a piston below a head; driven at ``rate`` (rad/s) from the angle ``start``, or free.
+    """Return a crank, a rod and a piston below a head.
+
+    It is driven at ``rate`` (rad/s) from the angle ``start``, or free.
 
     ``mounted``: in a block on soft mounts.
     """
@@ -62,7 +64,10 @@ def petrol(**more: Any) -> GasCycle:
 
 
 def radial(count: int = 5, rate: float = 200.0, start: float = 0.7, sense: float = 1.0) -> Mechanism:
-    """A radial engine: the upright cylinder's rod carries those of the others by knuckle pins around its big end."""
+    """Return a radial engine.
+
+    The upright cylinder's rod carries those of the others by knuckle pins around its big end.
+    """
     m, around = Mechanism("radial", gravity=None), 0.035
     crank = m.bar("crank", THROW, 2.0, (0.0, 0.0), 0.05)
     m.revolute("main", m.ground.origin, crank.start)

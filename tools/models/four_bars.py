@@ -14,7 +14,7 @@ NAMES = ("crank", "coupler", "rocker")
 
 @st.composite
 def crank_rockers(draw: st.DrawFn) -> tuple[float, float, float, float]:
-    """(ground, crank, coupler, rocker) of a linkage whose crank turns fully, some way off its change points."""
+    """Return (ground, crank, coupler, rocker) of crank-rockers some way off their change points."""
     crank = draw(st.floats(0.2, 1.0))
     ground, coupler = draw(st.floats(1.2, 4.0)), draw(st.floats(1.2, 4.0))
     low, high = abs(ground - coupler) + crank, ground + coupler - crank  # rocker range of a crank-rocker

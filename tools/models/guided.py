@@ -1,4 +1,4 @@
-"""Machines whose bodies are guided for a while: Geneva drives, a bead on a crossing curve, gears that no arm holds."""
+"""Machines guided for a while: Geneva drives, a bead on a crossing curve, gears that no arm holds."""
 
 from __future__ import annotations
 

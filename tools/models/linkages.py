@@ -28,7 +28,9 @@ def four_bar(
     traced: tuple[float, float] | None = None,
     gravity: Sequence[float] | None = STANDARD_GRAVITY,
 ) -> Mechanism:
-    """Return a four-bar A-B-C-D, with A at the origin and D at ``ground`` (m); ``traced``: point P of the coupler (m).
+    """Return a four-bar A-B-C-D, with A at the origin and D at ``ground`` (m).
+
+    ``traced``: point P of the coupler (m).
 
     ``at`` and ``start`` are rough angles (degrees) of crank, coupler and rocker; without a ``law`` nothing drives it.
     """
@@ -130,7 +132,10 @@ def slider_crank(
     start: tuple[float, ...] = (0.0, 5.0, 0.0),
     gravity: Sequence[float] | None = STANDARD_GRAVITY,
 ) -> Mechanism:
-    """Return a slider-crank O-A-B on a guide ``offset`` (m) above its shaft; ``start`` are rough angles (degrees)."""
+    """Return a slider-crank O-A-B on a guide ``offset`` (m) above its shaft.
+
+    ``start`` are rough angles (degrees).
+    """
     m = Mechanism("slider_crank", gravity=gravity)
     bars = m.bar("crank", crank, masses[0]), m.bar("rod", rod, masses[1])
     slider = m.body("slider", masses[2])
@@ -199,9 +204,9 @@ RATE = 2 * math.pi
 
 
 def walker(legs: int = 6, unit: float = 1e-3, apart: float = 0.0, moving: bool = False) -> Mechanism:
-    """Legs of seven bodies, each the mirror image of the one before, their cranks a part of a turn after each other;
-    ``unit`` (m) is one of Jansen's. Their shafts are ``apart`` (m); 0 is one line for all, of which there are no parts.
-    ``moving``: the frame is a body that is pulled along ground, else the legs stand on ground.
+    """Return legs of seven bodies, each the mirror image of the one before.
+
+    Their cranks are a part of a turn after each other; the plates between them are one frame.
     """
     m = Mechanism("walker")
     frame = m.ground

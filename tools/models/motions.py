@@ -10,18 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from shared.contract import (
-    Action,
-    BodyMotion,
-    Diagnostics,
-    DriverMotion,
-    Energy,
-    EventMark,
-    JointMotion,
-    Motion,
-    PointMotion,
-    Provenance,
-)
+from shared import contract
 from shared.contract.skeleton import Carried, CarriedName, Carrier, End, Moving, Name, Pose, Skeleton, Stroke
 
 GRAVITY = np.array([0.0, -9.81])
@@ -37,7 +26,10 @@ PUSHED = {"crank": {"A": 1, "B": -1}, "coupler": {"B": 1, "C": -1}, "rocker": {"
 
 
 class FourBar:
-    """A crank-rocker A-B-C-D turning at ``speed`` (rad/s) at given times (T,): (T,) angles, (T, 2) places (m)."""
+    """A crank-rocker A-B-C-D at given times (T,), in closed form.
+
+    It turns at ``speed`` (rad/s); angles are (T,), places (T, 2) (m).
+    """
 
     def __init__(self, time: np.ndarray, ground: float, lengths: dict[str, float], speed: float) -> None:
         self.lengths, zero = lengths, np.zeros_like(time)
@@ -81,7 +73,10 @@ class FourBar:
         return place + arm, velocity + w * _normal(arm), acceleration + e * _normal(arm) - w**2 * arm
 
     def efforts(self) -> np.ndarray:
-        """Return (T, 9) forces of the pins A to D (N) and the motor's torque (N m), from Newton-Euler equations."""
+        """Return (T, 9) forces of the pins A to D (N) and the motor's torque (N m).
+
+        They are those of the Newton-Euler equations.
+        """
         count = len(self.pins["A"])
         matrix, right = np.zeros((count, 9, 9)), np.zeros((count, 9))
         for row, (body, joints) in enumerate(PUSHED.items()):
@@ -127,7 +122,7 @@ def four_bar_motion(
     rocker: float = 0.090,
     speed: float = 2 * np.pi,
     point: tuple[float, float] = (0.06, 0.03),
-) -> Motion:
+) -> contract.Motion:
     """Return the motion of a crank-rocker; ``steps`` intervals a turn, both ends of the time given."""
     period = 2 * np.pi / speed
     time = np.linspace(0.0, turns * period, turns * steps + 1)
@@ -136,15 +131,15 @@ def four_bar_motion(
     torque, zero = solved[:, 8], np.zeros_like(time)
     pushes = dict.fromkeys(("x", "y", "fx", "fy"), zero.tolist())
     opening, velocity, acceleration = bars.residuals()
-    return Motion(
+    return contract.Motion(
         mechanism="four_bar",
-        provenance=Provenance(inputs="0" * 64, versions={"mbsd": "0.1.0"}),
+        provenance=contract.Provenance(inputs="0" * 64, versions={"mbsd": "0.1.0"}),
         gravity=(float(GRAVITY[0]), float(GRAVITY[1])),
         period=float(period),
         time=time.tolist(),
         bodies={name: _bar_motion(bars, name) for name in BARS},
         joints={
-            name: JointMotion(
+            name: contract.JointMotion(
                 kind="revolute", pair="pin", bodies=bodies,
                 x=bars.pins[name][:, 0].tolist(), y=bars.pins[name][:, 1].tolist(),
                 fx=solved[:, 2 * i].tolist(), fy=solved[:, 2 * i + 1].tolist(), torque=zero.tolist(),
@@ -152,18 +147,18 @@ def four_bar_motion(
             for i, (name, bodies) in enumerate(PINS.items())
         },
         drivers={
-            "motor": DriverMotion(
+            "motor": contract.DriverMotion(
                 kind="angle",
                 actions=[
-                    Action(body=body, **pushes, torque=(sign * torque).tolist())
+                    contract.Action(body=body, **pushes, torque=(sign * torque).tolist())
                     for body, sign in (("ground", -1.0), ("crank", 1.0))
                 ],
                 value=bars.theta["crank"].tolist(), effort=torque.tolist(), power=(torque * speed).tolist(),
             )
         },
-        points={"P": PointMotion(body="coupler", **_columns(*bars.point("coupler", *point)))},
-        energy=Energy(kinetic=kinetic.tolist(), potential=potential.tolist()),
-        diagnostics=Diagnostics(
+        points={"P": contract.PointMotion(body="coupler", **_columns(*bars.point("coupler", *point)))},
+        energy=contract.Energy(kinetic=kinetic.tolist(), potential=potential.tolist()),
+        diagnostics=contract.Diagnostics(
             position_residual=opening, velocity_residual=velocity, acceleration_residual=acceleration,
             power_residual=float(np.abs(power - torque * speed).max()), dof=1, redundant=[],
             # The sine of the transmission angle: zero where the real margin is.
@@ -172,15 +167,15 @@ def four_bar_motion(
     )  # fmt: skip
 
 
-def _bar_motion(bars: FourBar, name: str) -> BodyMotion:
-    return BodyMotion(
+def _bar_motion(bars: FourBar, name: str) -> contract.BodyMotion:
+    return contract.BodyMotion(
         **_columns(*bars.frames[name]),
         theta=bars.theta[name].tolist(), omega=bars.omega[name].tolist(), alpha=bars.alpha[name].tolist(),
         z=HEIGHTS[name], mass=MASSES[name], com=(bars.lengths[name] / 2, 0.0), inertia=bars.inertia[name],
     )  # fmt: skip
 
 
-def bouncing_ball(steps: int = 40, restitution: float = 0.5, mass: float = 0.2) -> Motion:
+def bouncing_ball(steps: int = 40, restitution: float = 0.5, mass: float = 0.2) -> contract.Motion:
     """A ball that falls 1 m and bounces once; both rows of the impact are there.
 
     It strikes at sqrt(2 / g) s with sqrt(2 g) m/s, where it loses (1 - e^2) m g of its energy.
@@ -198,27 +193,27 @@ def bouncing_ball(steps: int = 40, restitution: float = 0.5, mass: float = 0.2) 
     columns = _columns(np.stack([zero, y], 1), np.stack([zero, vy], 1), np.stack([zero, zero - g], 1))
     turning = {name: zero.tolist() for name in ("theta", "omega", "alpha")}
     loss = (restitution**2 - 1) * mass * g
-    return Motion(
+    return contract.Motion(
         mechanism="ball",
-        provenance=Provenance(inputs="0" * 64, versions={}),
+        provenance=contract.Provenance(inputs="0" * 64, versions={}),
         gravity=(0.0, -g),
         period=None,
         time=times.tolist(),
-        bodies={"ball": BodyMotion(**columns, **turning, z=0.0, mass=mass, com=(0.0, 0.0), inertia=1e-4)},
+        bodies={"ball": contract.BodyMotion(**columns, **turning, z=0.0, mass=mass, com=(0.0, 0.0), inertia=1e-4)},
         joints={},
         drivers={},
-        points={"P": PointMotion(body="ball", **columns)},
-        energy=Energy(kinetic=(mass * vy**2 / 2).tolist(), potential=(mass * g * y).tolist()),
-        events=[EventMark(time=strike, name="floor", what="impact", energy=loss)],
-        diagnostics=Diagnostics(
+        points={"P": contract.PointMotion(body="ball", **columns)},
+        energy=contract.Energy(kinetic=(mass * vy**2 / 2).tolist(), potential=(mass * g * y).tolist()),
+        events=[contract.EventMark(time=strike, name="floor", what="impact", energy=loss)],
+        diagnostics=contract.Diagnostics(
             position_residual=0.0, velocity_residual=0.0, acceleration_residual=0.0, power_residual=0.0, dof=3,
             redundant=[], singularity_margin=np.ones_like(times).tolist(),
         ),
     )  # fmt: skip
 
 
-def plain_skeleton(motion: Motion, poses: int = 12) -> Skeleton:
-    """Bars between the joints of each body, and a name at each body and joint: what the plots need of a skeleton."""
+def plain_skeleton(motion: contract.Motion, poses: int = 12) -> Skeleton:
+    """Return bars between the joints of each body, and names, as plots need them of a skeleton."""
     steps = np.linspace(0, len(motion.time) - 1, poses + 1).round().astype(int)[:-1]
 
     def bars(step: int) -> list[Stroke]:
@@ -259,7 +254,7 @@ def plain_skeleton(motion: Motion, poses: int = 12) -> Skeleton:
     )  # fmt: skip
 
 
-def _moving(motion: Motion, bars: list[Stroke], names: list[Name]) -> Moving:
+def _moving(motion: contract.Motion, bars: list[Stroke], names: list[Name]) -> Moving:
     """The bars, each carried by its body, and names that stay."""
     things = [*motion.bodies.values(), *motion.joints.values(), *motion.points.values()]
     places = np.array([(thing.x, thing.y) for thing in things])

@@ -12,7 +12,10 @@ from mbsd import Mechanism, angle_reaches, constant_rate, polynomial, speed_reac
 
 
 def cranks(turning: float = 0.0, stops: bool = False, motor: bool = False) -> Mechanism:
-    """Three equal cranks, of which the third repeats the others; where they turn they lie flat twice a turn."""
+    """Return three equal cranks, of which the third repeats the others.
+
+    Where they turn they lie flat twice a turn.
+    """
     m = Mechanism("cranks", gravity=(0, -9.81))
     coupler = m.bar("coupler", 0.6, mass=1.0)
     pins = []
@@ -105,7 +108,10 @@ def chain() -> Mechanism:
 
 
 def dry_chain() -> Mechanism:
-    """A chain in dry bearings: they come to rest, hold, and are released while they hold and while they turn."""
+    """Return a chain in dry bearings.
+
+    They come to rest, hold, and are released while they hold and while they turn.
+    """
     m = chain()
     m.friction("dry", "A", 0.2, radius=0.1, preload=120.0, sticks=True)
     m.friction("dry axle", "axle", 0.1, radius=0.02, sticks=True)
@@ -113,7 +119,10 @@ def dry_chain() -> Mechanism:
 
 
 def held_up() -> Mechanism:
-    """Two bars that their dry pins hold where they are, until both are released at once; then one falls on a floor."""
+    """Return two bars that their dry pins hold until both are released at once.
+
+    Then one falls on a floor.
+    """
     m = Mechanism("shelf", gravity=(0, -9.81))
     a, b, disc = m.bar("a", 0.4, mass=0.5), m.bar("coupler", 0.3, mass=0.4), m.body("disc", mass=1.0, inertia=1.0)
     m.revolute("A", m.ground.at(0, 0), a.start)

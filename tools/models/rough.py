@@ -116,7 +116,10 @@ def leaning_ladder(sticks: bool, static: float | None = None) -> Mechanism:
 
 
 def block_beside_slider_crank(sticks: bool, static: float | None = None) -> Mechanism:
-    """The pushed block and a slider-crank without a common body: they come to rest, and a growing torque pushes on."""
+    """Return the pushed block and a slider-crank without a common body.
+
+    They come to rest, and a growing torque pushes on.
+    """
     m = pushed_block(sticks, static, polynomial(0.0, 2.0), 20.0)
     crank, rod, slider = m.bar("crank 2", 0.1, 1.0), m.bar("rod 2", 0.3, 0.8), m.body("slider 2", 1.5, inertia=0.01)
     m.revolute("P", m.ground.at(0, 1), crank.start)

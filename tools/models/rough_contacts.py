@@ -107,7 +107,10 @@ def discs() -> Mechanism:
 
 
 def ring() -> Mechanism:
-    """A disc within a rolling ring, whose centres pass each other: steps may take them half their way alone."""
+    """Return a disc within a rolling ring, whose centres pass each other.
+
+    Steps may take them half their way alone.
+    """
     m = Mechanism("ring", gravity=(0, -G))
     ring, disc = m.body("ring", 1.0, inertia=0.05), m.body("disc", 0.3, inertia=0.001)
     m.rigid_contact("floor", m.ground.at(0, 0), ring.origin, 0.3, 0.0, 0.5)

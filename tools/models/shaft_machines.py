@@ -1,4 +1,4 @@
-"""Machines with things along a shaft, as users write them: engines, legs, walker, loom, sewing machine."""
+"""Machines with bodies along a shaft: engines, legs, walker, loom, sewing machine."""
 
 from __future__ import annotations
 
@@ -25,7 +25,10 @@ V_FOUR: Sequence[Cylinder] = [(45, 90, -0.0615), (-45, 90, -0.0385), (45, 270, 0
 
 
 def engine(cylinders: Sequence[Cylinder], mass: float | None = None) -> Mechanism:
-    """A crank, and for each cylinder a rod and a piston; ``mass`` (kg) of each piston, None for that of its parts."""
+    """Return a crank, and for each cylinder a rod and a piston.
+
+    ``mass`` (kg) of each piston, None for that of its parts.
+    """
     m = Mechanism("engine")
     crank = m.body("crank")
     m.revolute("main", m.ground.at(0, 0), crank.origin)
@@ -44,7 +47,10 @@ def engine(cylinders: Sequence[Cylinder], mass: float | None = None) -> Mechanis
 def legs(
     throws: Sequence[tuple[float, float]] = ((0, -0.06), (180, 0.0), (120, 0.06)), beside: float = 0.014
 ) -> Mechanism:
-    """Chebyshev's lambda legs on one shaft: throw (degrees) and place (m) of each; its rocker is ``beside`` it (m)."""
+    """Return Chebyshev's lambda legs on one shaft.
+
+    Throw (degrees) and place (m) of each; its rocker is ``beside`` it (m).
+    """
     m, a = Mechanism("legs"), 0.03
     crank = m.body("crank")
     m.revolute("main", m.ground.at(0, 0), crank.origin)
@@ -62,7 +68,10 @@ def legs(
 
 
 def press(places: Sequence[float] = (-0.03, 0.03), rod_z: bool = True, ram_z: float | None = None) -> Mechanism:
-    """A crank that pushes one ram by rods at several places (m); with ``rod_z`` False the markers alone tell them."""
+    """Return a crank that pushes one ram by rods at several places (m).
+
+    With ``rod_z`` False the markers alone tell them.
+    """
     m = Mechanism("press")
     crank, ram = m.body("crank"), m.body("ram", z=ram_z)
     m.revolute("main", m.ground.at(0, 0), crank.origin)
@@ -148,7 +157,10 @@ def loom(teeth: tuple[int, int] = (30, 60), place: float = 0.3) -> Mechanism:
 
 
 def sewing_machine(belt: float = -0.1) -> Mechanism:
-    """Needle bar and take-up lever on the arm shaft; the hook shaft turns twice as fast and moves the feed."""
+    """Return needle bar and take-up lever on the arm shaft of a sewing machine.
+
+    The hook shaft turns twice as fast and moves the feed.
+    """
     m = Mechanism("sewing_machine")
     arm, hook = m.body("arm_shaft"), m.body("hook_shaft")
     m.revolute("arm", m.ground.at(0, 0.20), arm.origin)

@@ -21,7 +21,10 @@ def slider_crank(gravity: Sequence[float] | None = STANDARD_GRAVITY) -> Mechanis
 
 
 def bell(angle: float = -20.0, turned: float = 0.0) -> Mechanism:
-    """A pendulum in a dry bearing, which comes to rest off the vertical; ``turned`` (rad): the world with it."""
+    """Return a pendulum in a dry bearing, which comes to rest off the vertical.
+
+    ``turned`` (rad): the world with it.
+    """
     m = Mechanism("bell", gravity=(9.80665 * math.sin(turned), -9.80665 * math.cos(turned)))
     bar = m.bar("bar", 0.5, mass=1.0)
     m.revolute("pin", m.ground.at(0.2, 0.1), bar.start)
@@ -31,7 +34,7 @@ def bell(angle: float = -20.0, turned: float = 0.0) -> Mechanism:
 
 
 def coasting_slider_crank(speed: float = 6.0, pull: float = 0.0) -> Mechanism:
-    """A slider-crank with friction in all its joints, which come to rest at once; the torque ``pull`` t turns it."""
+    """Return a slider-crank whose dry joints come to rest at once; the torque ``pull`` t turns it."""
     m = slider_crank(gravity=None)
     for pin in "OAB":
         m.friction(f"rub {pin}", pin, 0.15, static=0.2, radius=0.02, preload=20.0, sticks=True)
@@ -68,7 +71,10 @@ def arm() -> Mechanism:
 
 
 def two_slider_cranks(pull: float = 0.0, names: str = "ab") -> Mechanism:
-    """Slider-cranks "a" and "b" without a common body; the torque ``pull`` t turns "a", a constant one "b"."""
+    """Return slider-cranks "a" and "b" without a common body.
+
+    The torque ``pull`` t turns "a", a constant one "b".
+    """
     m = Mechanism("two slider-cranks", gravity=None)
     for name in names:
         y, angle, preload = (0.0, 30.0, 20.0) if name == "a" else (1.0, 50.0, 35.0)
@@ -91,7 +97,9 @@ def two_slider_cranks(pull: float = 0.0, names: str = "ab") -> Mechanism:
 def stuck_five_bar(
     motor: float = 20.0, turned: float = 0.0, order: str = "ABCDE", bend: float | None = None
 ) -> Mechanism:
-    """Four bars with two freedoms, friction in all joints, added in this ``order``, and the torque ``motor`` t.
+    """Return four bars with two freedoms and friction in all joints, added in this ``order``.
+
+    The torque ``motor`` t turns them.
 
     ``bend`` (rad): c is welded to d, ahead of it by so much.
     """
@@ -118,7 +126,10 @@ def stuck_five_bar(
 
 
 def weightless_slider_crank() -> Mechanism:
-    """It comes to rest in one dry pin, nothing loading it: squares of its rates are then too small for a number."""
+    """Return a slider-crank that comes to rest in one dry pin, nothing loading it.
+
+    Squares of its rates are then too small for a number.
+    """
     m = Mechanism("weightless", gravity=None)
     r, length, angle = 0.09957978332364759, 0.2476403430340473, 4.788131827429562
     crank, rod = m.bar("part", r, 1.7456816106902577), m.bar("rod", length, 0.8)

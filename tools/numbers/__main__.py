@@ -1,5 +1,6 @@
-"""``python -m tools.numbers`` check [TEXT] | record | keep [TEXT] | within TOLERANCE [TEXT]: see the package.
+"""Numbers of many runs, compared with those recorded or kept.
 
+``python -m tools.numbers`` check [TEXT] | record | keep [TEXT] | within TOLERANCE [TEXT], and
 ``python -m tools.numbers events`` check [TEXT] | record [TEXT] | loop [TEXT]: see tools/numbers/events.
 
 Python's, numpy's and the C library's functions and BLAS choose their code by the processor, which changes last digits.

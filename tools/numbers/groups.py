@@ -1,4 +1,4 @@
-"""Runs by name: every closed form of kinematics/groups/kinds in its three uses, on the models of its tests."""
+"""Runs of every closed form of kinematics/groups/kinds in its three uses, by name."""
 
 from __future__ import annotations
 

@@ -56,12 +56,18 @@ def keep(file: Path, runs: dict[str, Run]) -> None:
 
 
 def read(file: Path) -> dict[str, Run]:
-    """The runs in a file; raises OSError where there is none and msgspec.DecodeError for what is no such file."""
+    """Return the runs in a file.
+
+    Raises OSError where there is none and msgspec.DecodeError for what is no such file.
+    """
     return msgspec.msgpack.decode(file.read_bytes(), type=dict[str, Run])
 
 
 def farthest(before: Run, now: Run) -> tuple[float, str]:
-    """The largest difference between two results of a run, and where it is; infinite where something is missing."""
+    """Return the largest difference between two results of a run, and where it is.
+
+    It is infinite where something is missing.
+    """
     largest = ZERO * max((_largest(value) for run in (before, now) for value in _all(run)), default=0.0)
     worst = (0.0, "")
     for name in before.keys() | now.keys():

@@ -24,7 +24,7 @@ ASKED = ("sweep", "simulate", "equilibrium", "linearise", "modes", "batch")
 
 
 class _Watch:
-    """Notes what ``measure`` makes of each call's result, under the name of the test and the number of the call."""
+    """Notes of what ``measure`` makes of each call's result, by the test and the number of the call."""
 
     def __init__(self, measure: Callable[[Any], Any]) -> None:
         self.noted: dict[str, Any] = {}
@@ -53,7 +53,7 @@ class _Watch:
 
 
 def published(only: str, measure: Callable[[Any], Any]) -> Iterator[tuple[str, Any]]:
-    """Name of each call of the solver in the files and tests that ``only`` names, and the measure of its result."""
+    """Yield the name of each call of the solver in the tests that ``only`` names, and its measure."""
     watch, kept = _Watch(measure), {name: getattr(Mechanism, name) for name in ASKED}
     for name, method in kept.items():
         setattr(Mechanism, name, watch.watched(method))

@@ -109,7 +109,10 @@ def back(pose: Pose) -> Pose:
 
 
 def turnable(m: Mechanism) -> set[str]:
-    """Bodies, ground among them, whose frames may be turned: those that no kind unknown to this file measures."""
+    """Return bodies, ground among them, whose frames may be turned.
+
+    They are those that no kind unknown to this file measures.
+    """
     fixed: set[str] = set()
     for entry in (*m.joints.values(), *m.drivers.values(), *m.forces.values(), *m.contacts.values()):
         method = getattr(m, entry.kind.name)
@@ -172,7 +175,7 @@ def _velocity(old: StartVelocity, start: Start | None, own: Pose, world: Pose) -
 
 
 def _phased(entry: Joint | Force, frames: Mapping[str, Pose]) -> dict[str, Any]:
-    """Return the numbers of a joint or a force with the angles of its bodies that belong together in the new frames."""
+    """Return the numbers of a joint or a force with the angles of its bodies in the new frames."""
     params, ground = dict(entry.params), frames.get("ground", NOWHERE)[2]
     if params.get("phase") is not None:
         params["phase"] = tuple(

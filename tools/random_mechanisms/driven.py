@@ -1,4 +1,4 @@
-"""Points and discs on open curves that cross their straight continuations, or pass close by themselves."""
+"""Points and discs on open curves that cross their straight continuations, or pass close by."""
 
 from __future__ import annotations
 
@@ -128,7 +128,10 @@ def on_terrain(rng: np.random.Generator) -> Subject:
 
 @family("parallelogram, redundant")
 def parallelogram(rng: np.random.Generator) -> Subject:
-    """Three parallel cranks under one coupler: the third repeats the others, and carries it past the change points."""
+    """Return three parallel cranks under one coupler.
+
+    The third repeats the others, and carries it past the change points.
+    """
     m, drive = Mechanism("parallelogram"), turning(rng, float(rng.uniform(0.3, 2.6)))
     radius, width = (float(x) for x in rng.uniform(0.1, 0.6, 2))
     third = complex(0.4 * width, float(rng.choice([0.0, 1.0]) * rng.uniform(0.1, 0.4)))

@@ -1,4 +1,4 @@
-"""Driven cranks with dyads on them: four-bars, slider-cranks, six- and eight-bars, five-bars; all in closed form."""
+"""Driven cranks with dyads on them: four-bars to eight-bars, five-bars; all in closed form."""
 
 from __future__ import annotations
 
@@ -59,7 +59,10 @@ class Crank:
 
 @dataclass(frozen=True)
 class Bars:
-    """Two bars from points A and B to a common pin C; C is on the ``side`` (+-1) left of the way from A to B."""
+    """Two bars from points A and B to a common pin C.
+
+    C is on the ``side`` (+-1) left of the way from A to B.
+    """
 
     names: tuple[str, str]
     a: Point
@@ -84,7 +87,7 @@ class Bars:
 
 @dataclass(frozen=True)
 class RodAndSlider:
-    """A rod from A to a block's origin on a line through a point, at an angle there, on the ``side`` along it."""
+    """A rod from A to a block on a line through a point, at an angle there, on the ``side`` along it."""
 
     rod: str
     slider: str
@@ -254,7 +257,10 @@ class Built:
         return self.form.reach([law.over(0.0, self.duration) for law in self.laws], self.duration)
 
     def usual(self) -> Subject:
-        """Build dyads of usual lengths; only near a change point is it unknown whether they can move all the way."""
+        """Build dyads of usual lengths.
+
+        Only near a change point is it unknown whether they can move all the way.
+        """
         least = self.reach()
         possible = True if least > ROOMY else False if least < -ROOMY else None
         return self.subject(possible, math.sqrt(max(least, 0.0)))

@@ -1,4 +1,4 @@
-"""Events that last a moment: a tip that passes close by a point; found by simulations, and by a dense search."""
+"""Events that last a moment: a tip that passes close by a point, found by simulations and search."""
 
 from __future__ import annotations
 
@@ -44,7 +44,10 @@ def chain(m: Mechanism, rng: np.random.Generator, count: int, cart: bool) -> lis
 
 
 def some_force(m: Mechanism, rng: np.random.Generator, name: str, bodies: list[Body]) -> None:
-    """A force of a random kind on one of ``bodies`` but the first, which is ground; its size fits 1 kg and 1 m."""
+    """Add a force of a random kind on one of ``bodies`` but the first, which is ground.
+
+    Its size fits 1 kg and 1 m.
+    """
     second = bodies[int(rng.integers(1, len(bodies)))]
     first = [body for body in bodies if body is not second][int(rng.integers(len(bodies) - 1))]
     i, j = (body.at(*(float(x) for x in rng.normal(scale=0.3, size=2))) for body in (first, second))
@@ -155,7 +158,9 @@ def with_friction(rng: np.random.Generator) -> Subject:
 
 @family("four-bars in a row, free")
 def four_bars_in_a_row(rng: np.random.Generator) -> Subject:
-    """One to five parallelograms of equal bars swing through the poses where all lie flat, as one pendulum.
+    """Return one to five parallelograms of equal bars that swing as one pendulum.
+
+    They pass through the poses where all lie flat.
 
     With n of them, w the angle of the n + 1 rods:  ((n + 1) / 3 + n) w'' = -g ((n + 1) / 2 + n) cos(w).
     """
@@ -217,7 +222,7 @@ def redundant(rng: np.random.Generator) -> Subject:
 
 @family("massless bodies, free")
 def massless(rng: np.random.Generator) -> Subject:
-    """A four-bar whose coupler has no mass, or a chain held by massless rods; a point mass without inertia."""
+    """Return a mechanism with a massless coupler or rods, or a point mass without inertia."""
     m = Mechanism("massless")
     if rng.random() < 0.5:
         crank, coupler, rocker = m.bar("crank", 0.2, 1.0), m.bar("coupler", 0.6), m.bar("rocker", 0.5, 1.5)
@@ -303,7 +308,10 @@ def _few_steps(sol: Solution) -> list[str]:
 
 @family("stiff forces of the user")
 def stiff(rng: np.random.Generator) -> Subject:
-    """A body on a bar or free, braked by a power or an exponential of its speed, which overflows in trial states."""
+    """Return a body that is braked by a power or an exponential of its speed.
+
+    That overflows in trial states.
+    """
     m, power = Mechanism("braked"), int(rng.choice([0, 3, 5, 9]))
     size, scale = float(10 ** rng.uniform(0, 4)), float(rng.uniform(10, 40))
     free = rng.random() < 0.5
@@ -350,7 +358,10 @@ def passing(rng: np.random.Generator) -> Subject:
 
 
 def _passages(away: CubicHermiteSpline, t: np.ndarray, near: float) -> list[float] | None:
-    """Times of the closest places that are nearer than ``near`` (m), None where one grazes or the ends are near."""
+    """Return times of the closest places nearer than ``near`` (m).
+
+    None where one grazes or the ends are near.
+    """
 
     def distance(time: float) -> float:
         return float(np.hypot(*away(time)))

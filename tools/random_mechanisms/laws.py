@@ -28,7 +28,10 @@ class Drive:
 
 
 def turning(rng: np.random.Generator, start: float) -> Drive:
-    """Whole turns from ``start`` (rad): mostly at constant speed, sometimes speeding up, or by another law."""
+    """Return a law of whole turns from ``start`` (rad).
+
+    Mostly at constant speed, sometimes speeding up, or by another law.
+    """
     turns = float(rng.choice([0.5, 1.0, 1.0, 1.0, 2.0, 3.0]))
     speed = float(rng.choice([-1.0, 1.0]) * 10 ** rng.uniform(-0.5, 2.0))
     turn = TURN / abs(speed)
@@ -75,7 +78,7 @@ def _taken(sol: object) -> list[str]:
 
 @family("law with wrong derivatives", weight=0.3)
 def wrong(rng: np.random.Generator) -> Subject:
-    """A crank with a bob or a slider whose law errs in f' or f'' by a factor, a sign, or a part of 1e-5 to 1."""
+    """Return a crank whose law errs in f' or f'' by a factor, a sign, or a part of 1e-5 to 1."""
     m, rate, size = Mechanism("wrong law", gravity=(0.0, -9.81)), float(10 ** rng.uniform(-0.5, 1.5)), 0.7
     off = 1.0 + float(rng.choice([-2.0, 1.0, -1.0, *(10.0 ** rng.uniform(-5, 0, 3) * rng.choice([-1, 1], 3))]))
     slope, bend = (off, off) if rng.random() < 0.5 else (1.0, off)

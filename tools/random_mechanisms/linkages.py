@@ -1,4 +1,4 @@
-"""Random closed linkages for the solver's tests: loops of bars, sliders, slots and rods on ground or on each other.
+"""Random closed linkages for tests: loops of bars, sliders, slots and rods.
 
 A linkage is made from its start pose, so it closes. The first loop is a four-bar; each further one hangs between two
 random bodies and adds a freedom or none. Springs, dampers and torsion springs pull at it.
@@ -43,7 +43,7 @@ class Twist:
 
 @dataclass
 class Linkage:
-    """A mechanism, what pulls at it, and the bars that drivers may turn, with the bodies they are pinned to."""
+    """A mechanism, what pulls at it, and the bars that drivers may turn, with their partners."""
 
     m: Mechanism
     springs: list[Spring] = field(default_factory=list)
@@ -146,7 +146,10 @@ def _add_loop(
 
 
 def _points(rng: np.random.Generator, first: np.ndarray, last: np.ndarray, bars: int) -> np.ndarray:
-    """(bars + 1, 2) pins from near one host to near the other, no bar shorter than 0.25 m or almost along the next."""
+    """Return (bars + 1, 2) pins from near one host to near the other.
+
+    No bar is shorter than 0.25 m or almost along the next.
+    """
     for _ in range(1000):
         share = np.linspace(0.0, 1.0, bars + 1)[:, None]
         points = first + share * (last - first) + rng.normal(scale=0.35, size=(bars + 1, 2))

@@ -1,4 +1,4 @@
-"""Machines whose motion has a closed form: guides, yokes, gears, belts, racks, discs, engines with gas."""
+"""Machines whose motion has a closed form: guides, yokes, gears, belts, racks, engines with gas."""
 
 from __future__ import annotations
 
@@ -61,7 +61,10 @@ def _at_start(drive: Drive) -> float:
 
 @family("inverted slider-crank, quick return")
 def inverted(rng: np.random.Generator) -> Subject:
-    """A guide that a pin or block on the crank turns: it swings or goes round, sometimes near where that changes."""
+    """Return a guide that a pin or block on the crank turns.
+
+    It swings or goes round, sometimes near where that changes.
+    """
     m, drive = Mechanism("inverted"), turning(rng, float(rng.uniform(-1.2, 1.2)))
     radius = float(rng.uniform(0.05, 0.5))
     near = rng.random() < 0.3
@@ -109,7 +112,10 @@ def yoke(rng: np.random.Generator) -> Subject:
 
 @family("gears and belts")
 def gears(rng: np.random.Generator) -> Subject:
-    """A train of one to four wheels on ground: external, internal, open and crossed belts, now and then a rack."""
+    """Return a train of one to four wheels on ground.
+
+    They are external, internal or belts, now and then with a rack.
+    """
     m, drive = Mechanism("gears"), turning(rng, float(rng.uniform(-3, 3)))
     first = solid(m, "wheel0", rng)
     m.revolute("shaft0", m.ground.origin, first.origin)
@@ -249,7 +255,10 @@ SLACK = 1e-8
 
 @family("engines with gas that burns")
 def engines(rng: np.random.Generator) -> Subject:
-    """A slider-crank whose gas repeats after each turn, so that it does not matter in which turn its world stands."""
+    """Return a slider-crank whose gas repeats after each turn.
+
+    It does not matter in which turn its world stands.
+    """
     m, driven = Mechanism("engine", gravity=(float(rng.normal()), -9.81)), bool(rng.random() < 0.5)
     throw = float(rng.uniform(0.02, 0.06))
     rod, offset = float(rng.uniform(2.5, 4.5)) * throw, float(rng.choice([0.0, rng.uniform(-0.3, 0.3)])) * throw

@@ -1,4 +1,4 @@
-"""Kinds that ask more of parts than of the solver: places along the normal, marks on rims, sharp teeth."""
+"""Kinds that ask more of parts than of the solver: places along the normal, marks, sharp teeth."""
 
 from __future__ import annotations
 

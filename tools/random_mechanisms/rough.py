@@ -63,7 +63,10 @@ def striker(draw: Random) -> tuple[Mechanism, str]:
 
 
 def shaken_box(draw: Random) -> tuple[Mechanism, str]:
-    """A box on two or three feet, each with its friction, pulled to and fro; perhaps a dry pendulum hangs in it."""
+    """Return a box on two or three feet with friction, pulled to and fro.
+
+    Perhaps a dry pendulum hangs in it.
+    """
     m = Mechanism("box", gravity=(draw.uniform(-2.0, 2.0), -9.81))
     box = m.body("box", draw.uniform(0.5, 2.0), inertia=0.05)
     for k, x in enumerate(draw.choice([(-0.3, 0.3), (-0.3, 0.0, 0.3), (-0.3, 0.1, 0.3)])):

@@ -1,4 +1,4 @@
-"""Random mechanisms of shafts, gears, belts, racks, cams, Genevas, users' relations and dyads, anywhere in a plane."""
+"""Random mechanisms of shafts, gears, belts, racks, cams, Genevas, relations of users and dyads."""
 
 from __future__ import annotations
 

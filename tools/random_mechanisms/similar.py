@@ -1,4 +1,4 @@
-"""One mechanism in other words: its mirror image, other units, other names, its parts in another order."""
+"""One mechanism in other words: its mirror image, other units, other names, another order."""
 
 from __future__ import annotations
 
@@ -55,7 +55,10 @@ MIRRORED = {
 
 
 def mirrored(m: Mechanism) -> Mechanism | None:
-    """The mirror image about the x axis; None where a kind has a side, or a function of the user sees the world."""
+    """Return the mirror image about the x axis.
+
+    None where a kind has a side, or a function of the user sees the world.
+    """
     if m.events or any(entry.kind.name not in MIRRORED for entry in _entries(m)):
         return None
 
@@ -75,7 +78,10 @@ def mirrored(m: Mechanism) -> Mechanism | None:
 
 
 def in_units(m: Mechanism, length: float, mass: float) -> Mechanism | None:
-    """The same with numbers of length and mass so many times as large; None where a kind's numbers are not known."""
+    """Return the same with numbers of length and mass so many times as large.
+
+    None where a kind's numbers are not known.
+    """
     if m.events or not all(_is_known(entry) for entry in _entries(m)):
         return None
 

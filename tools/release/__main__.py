@@ -1,4 +1,4 @@
-"""``make release``: sdist, wheel, their hashes and NOTES.md in dist/, if all that a release promises holds.
+"""``make release``: sdist, wheel, hashes and NOTES.md in dist/, if all that a release promises holds.
 
     python -m tools.release [--out FOLDER] [--only WORD] [--pythons VERSION ...]
 

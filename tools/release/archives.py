@@ -66,7 +66,10 @@ def sums(paths: Sequence[Path]) -> str:
 
 
 def differences(first: Sequence[Path], second: Sequence[Path]) -> list[str]:
-    """Return names of archives that are in one build alone, or whose bytes differ; of a wheel also which members do."""
+    """Return names of archives that are in one build alone, or whose bytes differ.
+
+    Of a wheel also which members do.
+    """
     ours, theirs = ({path.name: path for path in paths} for paths in (first, second))
     alone = sorted(set(ours) ^ set(theirs))
     other = [name for name in sorted(set(ours) & set(theirs)) if _hash(ours[name]) != _hash(theirs[name])]
@@ -131,7 +134,10 @@ print(metadata("mbsd")["Version"], metadata("mbsd")["License-Expression"], f"{np
 
 
 def four_bar_in_a_new_environment(wheel: Path, folder: Path) -> str:
-    """Install the wheel in ``folder`` and solve. Raises UserError where a step fails, with the last lines of it."""
+    """Install the wheel in ``folder`` and solve.
+
+    Raises UserError where a step fails, with the last lines of it.
+    """
     _run([sys.executable, "-m", "venv", str(folder)], "a new environment could not be made")
     pip = [str(folder / "bin" / "pip"), "--disable-pip-version-check"]
     _run([*pip, "install", "--quiet", str(wheel)], "pip could not install the wheel (a network is needed)")

@@ -1,1 +1,1 @@
-"""The documents as a site: pages, sources that they link to, names of mbsd; no network, also from file://."""
+"""The documents as a site: pages, linked sources, names of mbsd; no network, also from file://."""

@@ -33,7 +33,7 @@ def main() -> int:
 
 
 def refuse_without_packages() -> None:
-    """Raise UserError that names the packages of the extra ``docs`` that are missing, and what brings them."""
+    """Raise UserError that names missing packages of the extra ``docs``, and what brings them."""
     missing = [package for module, package in NEEDED.items() if find_spec(module) is None]
     if missing:
         raise UserError(

@@ -22,7 +22,10 @@ HEADING = re.compile(r"^## (.+)$|^- \[(.+?)\]\((.+?)\)$", re.MULTILINE)
 
 
 def navigation(groups: list[Any], pages: Path) -> list[Any]:
-    """The groups with ``{decisions}`` and ``{reference}`` filled in; pages of docs/ in none of them are under More."""
+    """Return the groups with ``{decisions}`` and ``{reference}`` filled in.
+
+    Pages of docs/ in none of them are under More.
+    """
     filled = _filled(groups, {"{decisions}": _decisions(pages), "{reference}": [f"reference/{name}" for name in PAGES]})
     listed = set(_files(filled))
     more = [name for page in sorted((pages / "docs").glob("*.md")) if (name := f"docs/{page.name}") not in listed]
@@ -67,7 +70,10 @@ CONFIGURATION = Path(__file__).with_name("mkdocs.yml")
 
 
 def build(root: Path, out: Path) -> None:
-    """Write the site of the clone ``root`` to ``out``, whole or not at all. Raises UserError where a page is wrong."""
+    """Write the site of the clone ``root`` to ``out``, whole or not at all.
+
+    Raises UserError where a page is wrong.
+    """
     out.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=out.parent, prefix=".site-") as temporary:
         pages, built = Path(temporary) / "pages", Path(temporary) / "site"

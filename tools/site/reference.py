@@ -13,6 +13,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from shared.stage.console import markdown_table
 from shared.stage.paths import ROOT
 
 # Which names are on which page of the reference.
@@ -122,7 +123,10 @@ def first_sentence(doc: str | None) -> str:
 
 
 def signature(name: str, function: Callable[..., Any], bound: bool = False) -> str:
-    """``name(arguments) -> result``, over several lines where it is long; ``bound`` leaves the first argument out."""
+    """Return ``name(arguments) -> result``, over several lines where it is long.
+
+    ``bound`` leaves the first argument out.
+    """
     described = inspect.signature(function)
     parameters = [p for p in list(described.parameters.values())[1 if bound else 0 :] if not _of_the_class(p)]
     words = _marked(parameters)
@@ -322,8 +326,8 @@ def _members(name: str, owner: type, level: str) -> Iterator[str]:
 
 
 def _table(data: list[Member]) -> str:
-    rows = (f"| `{m.name}` | `{m.type}` | {first_sentence(m.doc)} |" for m in data)
-    return "| name | type | what |\n|---|---|---|\n" + "\n".join(rows)
+    rows = [(f"`{m.name}`", f"`{m.type}`", first_sentence(m.doc)) for m in data]
+    return "\n".join(markdown_table(("name", "type", "what"), rows))
 
 
 def _method(owner: str, member: Member, level: str) -> str:
@@ -340,8 +344,6 @@ INDEX = """# Names of mbsd
 Every public name, from the docstrings of the sources: SI units, radians, counter-clockwise; `(T,)` is a value at
 each of T times.
 
-| page | names |
-|---|---|
 """
 OF_MACHINES = """Each is imported from its own file, as [Engines](../docs/engines.md) and
 [The hip thrust](../docs/hip_thrust.md) show.
@@ -358,11 +360,11 @@ def write_reference(folder: Path) -> None:
 
 
 def _index() -> str:
-    rows = (
-        f"| [{title}]({page}) | {', '.join(f'[`{name}`]({_address(page, name, names)})' for name in names)} |\n"
+    rows = [
+        (f"[{title}]({page})", ", ".join(f"[`{name}`]({_address(page, name, names)})" for name in names))
         for page, (title, names) in contents().items()
-    )
-    return INDEX + "".join(rows)
+    ]
+    return INDEX + "\n".join(markdown_table(("page", "names"), rows)) + "\n"
 
 
 def _address(page: str, name: str, names: dict[str, Any]) -> str:
@@ -382,8 +384,9 @@ def _entries(names: dict[str, Any]) -> str:
     constants = {name: value for name, value in names.items() if not callable(value)}
     out = [entry(name, value, len(names) == 1) for name, value in names.items() if name not in constants]
     if constants:
-        rows = "\n".join(f"| `{name}`{{ #{name} }} | `{_short(value)}` |" for name, value in constants.items())
-        out.append(f"## Constants\n\n| name | value |\n|---|---|\n{rows}\n")
+        rows = [(f"`{name}`{{ #{name} }}", f"`{_short(value)}`") for name, value in constants.items()]
+        table = "\n".join(markdown_table(("name", "value"), rows))
+        out.append(f"## Constants\n\n{table}\n")
     return "\n".join(out)
 
 

@@ -1,4 +1,4 @@
-"""The folder that MkDocs reads: the documents where they are in the clone, and a page for every source they link to."""
+"""The folder that MkDocs reads: documents as in the clone, and a page for every linked source."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``python -m tools.wheel``: mbsd with all its rooms as sdist and wheel; --kernels: wheels with kernels inside, too.
+"""``python -m tools.wheel``: mbsd as sdist and wheel; with --kernels wheels that hold kernels, too.
 
 The wheels are built from the unpacked sdist. The same sources give the same bytes; SOURCE_DATE_EPOCH is the time that
 the archives tell (1980 if it is not set). Compiled kernels are not the same bytes each time: LLVM's names count up.

@@ -1,4 +1,4 @@
-"""The archives: sources copied to a folder of their own, an sdist of them, wheels of the unpacked sdist."""
+"""The archives: sources copied to a folder, an sdist of them, wheels of the unpacked sdist."""
 
 from __future__ import annotations
 

@@ -56,7 +56,9 @@ def compile_into(folder: Path, sources: Path, python: Path = Path(sys.executable
 
 @contextmanager
 def interpreter(version: str) -> Iterator[Path]:
-    """Yield a Python of this version that has what the solver and its wheel need; ours where the version is ours.
+    """Yield a Python of this version that has what the solver and its wheel need.
+
+    It is ours where the version is ours.
 
     Raises UserError if uv finds no such Python, or its packages cannot be installed.
     """
@@ -77,7 +79,10 @@ def interpreter(version: str) -> Iterator[Path]:
 
 
 def _installed(version: str) -> str:
-    """Return the path of a Python of this version that runs here; its version, for uv to fetch, where there is none."""
+    """Return the path of a Python of this version that runs here.
+
+    Where there is none, its version, for uv to fetch.
+    """
     try:
         command = [f"python{version}", "-c", "import sys; print(sys.executable)"]
         return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()

@@ -13,7 +13,7 @@ from mbsd.drawing.look import INK, QUIET
 from mbsd.drawing.pose import Pose
 from mbsd.drawing.symbols.geometry import ROUND
 from mbsd.drawing.symbols.surfaces import curve_way, draw_way
-from mbsd.drawing.symbols.wheels import draw_disc
+from mbsd.drawing.symbols.wheels import draw_disc, draw_span
 from mbsd.model.joint import Joint
 
 BEYOND = 3.0
@@ -42,8 +42,8 @@ def contact_reach(joint: Joint, pose: Pose) -> np.ndarray:
         out.append(curve_way(joint, pose, f"contact {joint.name}"))
     elif joint.kind.touching == "discs":
         out.append(i + joint.params["radius_i"] * ROUND)
-    elif joint.kind.drawn_as == "rope":
-        out.append(i[None])
+    elif joint.kind.drawn_as in ("rope", "slack_span"):
+        out.append(i + joint.params.get("radius_i", 0.0) * ROUND)
     return np.concatenate(out)
 
 
@@ -156,6 +156,7 @@ SIGNS: dict[str, Callable[[Canvas, Joint, Pose, dict[str, str]], None]] = {
     "rigid_terrain": _terrain,
     "rigid_discs": _discs,
     "rope": _rope_line,
+    "slack_span": draw_span,
     "coordinate_stop": _coordinate_stop,
     "angle_stop": _angle_stop,
 }

@@ -23,7 +23,7 @@ from mbsd.drawing.symbols.higher_pairs import (
     draw_rolling_disc,
     draw_rolling_on_curve,
 )
-from mbsd.drawing.symbols.wheels import draw_belt, draw_gear_pair
+from mbsd.drawing.symbols.wheels import draw_belt, draw_gear_pair, draw_span
 
 PIN = 0.62
 """Radius of a pin, in units."""
@@ -191,6 +191,7 @@ SYMBOLS: dict[str, Callable[[Canvas, Place], None]] = {
     "distance": _distance,
     "gear_pair": lambda canvas, place: draw_gear_pair(canvas, place.joint, place.pose, place.colours),
     "belt": lambda canvas, place: draw_belt(canvas, place.joint, place.pose, place.colours),
+    "cable_span": lambda canvas, place: draw_span(canvas, place.joint, place.pose, place.colours),
     "rack_and_pinion": draw_rack,
     "rolling_disc": draw_rolling_disc,
     "rolling_on_curve": draw_rolling_on_curve,

@@ -1,4 +1,4 @@
-"""Signs of gears and belts: toothed outlines at the pitch circles, strands that touch the pulleys."""
+"""Signs of gears, belts and cables: toothed outlines at the pitch circles, strands that touch the pulleys."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.carriers import along_line, on_body
 from mbsd.drawing.look import INK, QUIET
 from mbsd.drawing.pose import Pose
+from mbsd.model.cables import signed_radii
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
@@ -126,3 +127,25 @@ def draw_belt(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str])
                 normal = np.array([math.cos(line + side * lean), math.sin(line + side * lean)])
                 canvas.line([i + r_i * normal, j + other * normal], INK, 1.8, order=3)
         canvas.label(joint.name, (i + j) / 2, 0.6)
+
+
+def draw_span(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
+    """Draw a span of a cable from wheel to wheel, and those of its wheels that are not yet on the canvas."""
+    signed = signed_radii(joint.params)
+    ends = [pose.place(marker) for marker in (joint.i, joint.j)]
+    for marker, centre, radius in zip((joint.i, joint.j), ends, signed, strict=True):
+        key = marker.body.name, marker.x, marker.y, abs(radius)
+        if radius == 0.0 or key in canvas.pulleys:
+            continue
+        canvas.pulleys.add(key)
+        with canvas.on(on_body(marker.body.name)):
+            angle = pose.frames[marker.body.name][2]
+            draw_disc(canvas, centre, abs(radius), angle, colours.get(marker.body.name, QUIET))
+    gap = ends[1] - ends[0]
+    offset, distance = signed[1] - signed[0], float(np.hypot(*gap))
+    if distance > abs(offset):
+        along = math.atan2(gap[1], gap[0]) - math.asin(offset / distance)
+        left = np.array([-math.sin(along), math.cos(along)])
+        ends = [centre - radius * left for centre, radius in zip(ends, signed, strict=True)]
+    canvas.line(ends, INK, 1.8, order=5)
+    canvas.label(joint.name, (ends[0] + ends[1]) / 2, 0.5)

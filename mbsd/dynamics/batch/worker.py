@@ -18,13 +18,7 @@ from mbsd.dynamics.batch.loop import MOST_STEPS, Loop, Work
 from mbsd.dynamics.batch.outputs import MotionsOf, Outputs, Reactions
 from mbsd.dynamics.batch.patches import NotPatched, Patches, agrees
 from mbsd.dynamics.batch.rows import NEARLY_SINGULAR, STOPPED, Numbers
-from mbsd.dynamics.batch.single_run import (
-    Base,
-    NotCompiled,
-    SingleRun,
-    has_cylinders,
-    single_run,
-)
+from mbsd.dynamics.batch.single_run import Base, NotCompiled, SingleRun, has_cylinders, single_run
 from mbsd.dynamics.events.loop import NOT_SOLVED
 from mbsd.dynamics.measures.columns import Done, columns_of, failed, joined, numbers_of
 from mbsd.dynamics.measures.quantities import Motions

@@ -25,32 +25,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, internal, lazy
-from mbsd.dynamics.events.arrays import (
-    ALONE,
-    AT_ONCE,
-    BESIDE,
-    BROKEN,
-    CLOSED,
-    FORCED,
-    FREE,
-    FRICTION,
-    GUESS,
-    HOLDING,
-    KINETIC,
-    LIMIT,
-    NEXT_SIGN,
-    NO_SIGN,
-    NORMAL,
-    RATE,
-    RELEASED,
-    REST,
-    RESTING,
-    ROW,
-    SIGN,
-    STATIC,
-    STAYING,
-    TAKING,
-)
+from mbsd.dynamics.events import arrays
 from mbsd.dynamics.events.laws.complementarity import lowest_row, pivot_to_end
 from mbsd.dynamics.events.rows import STIFF, find_rates, gaps_of, keep_independent, move_zero, stop
 from mbsd.equations.joint_friction import STATIC as JOINT_STATIC
@@ -72,14 +47,14 @@ IN_TURN = 5
 @internal
 def gives(contacts, k):
     """Return True if a force along way k moves anything: not at a turning point, nor where drivers alone move it."""
-    return contacts.compliance[k, k] > STIFF * contacts.vector[ALONE, k]
+    return contacts.compliance[k, k] > STIFF * contacts.vector[arrays.ALONE, k]
 
 
 @internal
 def holds(dyn, contacts, k):
     """Return True if friction can hold way k: not of a released joint, nor with a coefficient of zero."""
-    at = contacts.place[k, FRICTION]
-    if contacts.number[k, RELEASED] != 0.0:
+    at = contacts.place[k, arrays.FRICTION]
+    if contacts.number[k, arrays.RELEASED] != 0.0:
         return False
     return at < 0 or dyn.loads.friction_number[at, JOINT_STATIC] > 0.0
 
@@ -88,22 +63,22 @@ def holds(dyn, contacts, k):
 def _halts(contacts, k, gaps, halted):
     """Return True if way k has just come to rest."""
     w = k - gaps
-    return contacts.friction.number[w, BROKEN] == 0.0 if w < contacts.friction.gap.shape[0] else k == halted
+    return contacts.friction.number[w, arrays.BROKEN] == 0.0 if w < contacts.friction.gap.shape[0] else k == halted
 
 
 @internal
 def _more_rest(dyn, contacts, gaps, halted):
     """Add ways to chosen[RESTING] by vector[RATE]; whether there were more."""
     friction = contacts.friction
-    resting = contacts.chosen[RESTING]
+    resting = contacts.chosen[arrays.RESTING]
     more = False
     for k in range(gaps, resting.shape[0]):
         w = k - gaps
-        if resting[k] != 0 or (w < friction.gap.shape[0] and contacts.chosen[STAYING, friction.gap[w]] == 0):
+        if resting[k] != 0 or (w < friction.gap.shape[0] and contacts.chosen[arrays.STAYING, friction.gap[w]] == 0):
             continue
         if not holds(dyn, contacts, k):
             continue
-        slow = abs(contacts.vector[RATE, k]) <= contacts.number[k, REST]
+        slow = abs(contacts.vector[arrays.RATE, k]) <= contacts.number[k, arrays.REST]
         if gives(contacts, k) and (slow or _halts(contacts, k, gaps, halted)):
             resting[k] = 1
             more = True
@@ -120,17 +95,17 @@ def find_resting(dyn, scratch, contacts, v, halted):
     gaps = gaps_of(contacts)
     own = contacts.rates[0]
     for k in range(contacts.place.shape[0]):
-        contacts.chosen[RESTING, k] = 0
+        contacts.chosen[arrays.RESTING, k] = 0
     find_rates(dyn, scratch, contacts, v)
     while _more_rest(dyn, contacts, gaps, halted):
         for c in range(v.shape[0]):
             own[c] = v[c]
-        keep_independent(contacts, contacts.chosen[RESTING])
+        keep_independent(contacts, contacts.chosen[arrays.RESTING])
         stop(dyn, scratch, contacts, own)
         find_rates(dyn, scratch, contacts, own)
     for k in range(gaps, contacts.place.shape[0]):
         if _halts(contacts, k, gaps, halted):
-            contacts.vector[RATE, k] = 0.0
+            contacts.vector[arrays.RATE, k] = 0.0
 
 
 @internal
@@ -139,7 +114,7 @@ def _fill_tableau(contacts, compliance, rates, first, both, size, fastest):
 
     ``size``: of compliances, ``fastest``: of rates, by which all is divided.
     """
-    alone = contacts.vector[ALONE]
+    alone = contacts.vector[arrays.ALONE]
     tableau = contacts.tableau
     places = contacts.basis[1]
     ways = both - first
@@ -175,8 +150,8 @@ def solve_with_friction(contacts, compliance, rates, coefficient, out):
     with mu. L stands in its BESIDE, of joints in LIMIT. Returns False where nothing gives way, or no N and T are
     possible.
     """
-    taking = contacts.chosen[TAKING]
-    alone = contacts.vector[ALONE]
+    taking = contacts.chosen[arrays.TAKING]
+    alone = contacts.vector[arrays.ALONE]
     tableau = contacts.tableau
     places = contacts.basis[1]
     friction = contacts.friction
@@ -216,10 +191,10 @@ def solve_with_friction(contacts, compliance, rates, coefficient, out):
         tableau[slack, n + first + k] = 1.0
         tableau[slack, n + first + ways + k] = 1.0
         if way >= joints:
-            tableau[slack, last] = contacts.sticks.vector[LIMIT, way] / unit * size / fastest
+            tableau[slack, last] = contacts.sticks.vector[arrays.LIMIT, way] / unit * size / fastest
             continue
         number = friction.number[way - gaps]
-        tableau[slack, last] = number[BESIDE] / unit * size / fastest
+        tableau[slack, last] = number[arrays.BESIDE] / unit * size / fastest
         for j in range(first):
             if places[j] == friction.gap[way - gaps]:
                 tableau[slack, n + j] = -number[coefficient] / unit / math.sqrt(alone[places[j]])
@@ -245,11 +220,11 @@ def note_met(contacts, met, lam):
     number = contacts.friction.number
     gaps = gaps_of(contacts)
     for w in range(number.shape[0]):
-        number[w, FORCED] = NO_SIGN
+        number[w, arrays.FORCED] = arrays.NO_SIGN
     if gaps <= met < gaps + number.shape[0]:
-        slips = contacts.number[met, CLOSED] > 0.0
-        force = lam[contacts.place[met, ROW]]
-        number[met - gaps, FORCED] = math.copysign(1.0, force) if slips and force != 0.0 else 0.0
+        slips = contacts.number[met, arrays.CLOSED] > 0.0
+        force = lam[contacts.place[met, arrays.ROW]]
+        number[met - gaps, arrays.FORCED] = math.copysign(1.0, force) if slips and force != 0.0 else 0.0
 
 
 @internal
@@ -260,19 +235,19 @@ def one_by_one(contacts):
     their limits again and again at one time.
     """
     number = contacts.friction.number
-    out = contacts.sticks.joint.shape[0] == 0 and contacts.clock[AT_ONCE] <= IN_TURN * gaps_of(contacts)
+    out = contacts.sticks.joint.shape[0] == 0 and contacts.clock[arrays.AT_ONCE] <= IN_TURN * gaps_of(contacts)
     for w in range(number.shape[0]):
-        out = out and number[w, STATIC] <= number[w, KINETIC]
+        out = out and number[w, arrays.STATIC] <= number[w, arrays.KINETIC]
     return out
 
 
 @internal
 def acceleration_of(contacts, forces, k):
     """Return the acceleration of row k under N and T in ``forces`` (c,) of chosen[TAKING], and its largest part."""
-    out = contacts.vector[FREE, k]
+    out = contacts.vector[arrays.FREE, k]
     most = abs(out)
     for j in range(contacts.place.shape[0]):
-        if contacts.chosen[TAKING, j] != 0:
+        if contacts.chosen[arrays.TAKING, j] != 0:
             part = contacts.friction.compliance[k, j] * forces[j]
             out += part
             most = max(most, abs(part))
@@ -285,25 +260,25 @@ def left_of(contacts, forces, k, limit, rounding):
     left = acceleration_of(contacts, forces, k)[0]
     own = contacts.compliance[k, k]
     others = abs(left - own * forces[k])
-    zero = max(rounding * max(own * limit, others), UNSURE * abs(contacts.vector[FREE, k]))
+    zero = max(rounding * max(own * limit, others), UNSURE * abs(contacts.vector[arrays.FREE, k]))
     return left if abs(left) > zero else 0.0
 
 
 @internal
 def begin_touched(contacts, touched, faint, rounding):
     """Let gap ``touched`` hold that has just closed, where it does not push yet: its push begins now."""
-    if touched < 0 or contacts.chosen[STAYING, touched] == 0 or contacts.vector[NORMAL, touched] > faint:
+    if touched < 0 or contacts.chosen[arrays.STAYING, touched] == 0 or contacts.vector[arrays.NORMAL, touched] > faint:
         return
-    left, most = acceleration_of(contacts, contacts.vector[NORMAL], touched)
+    left, most = acceleration_of(contacts, contacts.vector[arrays.NORMAL], touched)
     if abs(left) > GRAZING * most:
         return
     friction = contacts.friction
     gaps = gaps_of(contacts)
     for w in range(friction.gap.shape[0]):
-        if friction.gap[w] == touched and friction.number[w, GUESS] == 0.0:
-            along = left_of(contacts, contacts.vector[NORMAL], gaps + w, 0.0, rounding)
-            friction.number[w, NEXT_SIGN] = math.copysign(1.0, along) if along != 0.0 else 0.0
-    contacts.vector[NORMAL, touched] = BEGINS
+        if friction.gap[w] == touched and friction.number[w, arrays.GUESS] == 0.0:
+            along = left_of(contacts, contacts.vector[arrays.NORMAL], gaps + w, 0.0, rounding)
+            friction.number[w, arrays.NEXT_SIGN] = math.copysign(1.0, along) if along != 0.0 else 0.0
+    contacts.vector[arrays.NORMAL, touched] = BEGINS
 
 
 @internal
@@ -311,8 +286,8 @@ def begin_deciding(contacts, hair):
     """Restore static friction, but of a contact that has come to its limit; ``hair``: part of the limit left."""
     number = contacts.friction.number
     for w in range(number.shape[0]):
-        number[w, BROKEN] = number[w, FORCED]
-        number[w, HOLDING] = hair * number[w, STATIC]
+        number[w, arrays.BROKEN] = number[w, arrays.FORCED]
+        number[w, arrays.HOLDING] = hair * number[w, arrays.STATIC]
 
 
 @internal
@@ -321,12 +296,12 @@ def guess(contacts):
     number = contacts.friction.number
     gaps = gaps_of(contacts)
     for w in range(number.shape[0]):
-        rate = contacts.vector[RATE, gaps + w]
-        number[w, GUESS] = 0.0
-        if number[w, BROKEN] != NO_SIGN:
-            number[w, GUESS] = number[w, BROKEN]
-        elif abs(rate) > contacts.number[gaps + w, REST]:
-            number[w, GUESS] = math.copysign(1.0, rate)
+        rate = contacts.vector[arrays.RATE, gaps + w]
+        number[w, arrays.GUESS] = 0.0
+        if number[w, arrays.BROKEN] != arrays.NO_SIGN:
+            number[w, arrays.GUESS] = number[w, arrays.BROKEN]
+        elif abs(rate) > contacts.number[gaps + w, arrays.REST]:
+            number[w, arrays.GUESS] = math.copysign(1.0, rate)
 
 
 @internal
@@ -338,20 +313,20 @@ def press(contacts):
     friction = contacts.friction
     number = friction.number
     pressed = friction.compliance
-    taking = contacts.chosen[TAKING]
+    taking = contacts.chosen[arrays.TAKING]
     count = taking.shape[0]
     gaps = gaps_of(contacts)
     for k in range(count):
-        taking[k] = contacts.chosen[STAYING, k]
+        taking[k] = contacts.chosen[arrays.STAYING, k]
         for j in range(count):
             pressed[k, j] = contacts.compliance[k, j]
     for w in range(number.shape[0]):
         k = friction.gap[w]
-        number[w, BESIDE] = 0.0
-        taking[gaps + w] = 1 if taking[k] != 0 and number[w, GUESS] == 0.0 else 0
-        if number[w, GUESS] != 0.0:
+        number[w, arrays.BESIDE] = 0.0
+        taking[gaps + w] = 1 if taking[k] != 0 and number[w, arrays.GUESS] == 0.0 else 0
+        if number[w, arrays.GUESS] != 0.0:
             for j in range(count):
-                pressed[j, k] -= number[w, KINETIC] * number[w, GUESS] * contacts.compliance[j, gaps + w]
+                pressed[j, k] -= number[w, arrays.KINETIC] * number[w, arrays.GUESS] * contacts.compliance[j, gaps + w]
 
 
 @internal
@@ -363,18 +338,18 @@ def breaks(contacts, faint, rounding):
     broken = False
     plain = one_by_one(contacts)
     for w in range(number.shape[0]):
-        number[w, NEXT_SIGN] = number[w, GUESS]
-        normal = contacts.vector[NORMAL, friction.gap[w]]
-        along = contacts.vector[NORMAL, gaps + w]
-        if contacts.chosen[TAKING, gaps + w] == 0 or not normal > faint or along == 0.0:
+        number[w, arrays.NEXT_SIGN] = number[w, arrays.GUESS]
+        normal = contacts.vector[arrays.NORMAL, friction.gap[w]]
+        along = contacts.vector[arrays.NORMAL, gaps + w]
+        if contacts.chosen[arrays.TAKING, gaps + w] == 0 or not normal > faint or along == 0.0:
             continue
-        limit = number[w, HOLDING] * normal
+        limit = number[w, arrays.HOLDING] * normal
         if abs(along) < limit * (1.0 - AT_LIMIT):
             continue
-        if plain or left_of(contacts, contacts.vector[NORMAL], gaps + w, limit, rounding) != 0.0:
-            number[w, NEXT_SIGN] = -math.copysign(1.0, along)
-            if number[w, STATIC] > number[w, KINETIC]:
-                number[w, BROKEN] = number[w, NEXT_SIGN]
+        if plain or left_of(contacts, contacts.vector[arrays.NORMAL], gaps + w, limit, rounding) != 0.0:
+            number[w, arrays.NEXT_SIGN] = -math.copysign(1.0, along)
+            if number[w, arrays.STATIC] > number[w, arrays.KINETIC]:
+                number[w, arrays.BROKEN] = number[w, arrays.NEXT_SIGN]
                 broken = True
     return broken
 
@@ -387,10 +362,10 @@ def slide_or_stick(scratch, contacts):
     gaps = gaps_of(contacts)
     for w in range(number.shape[0]):
         p = gaps + w
-        closed = contacts.number[friction.gap[w], CLOSED] > 0.0
-        sticks = closed and number[w, NEXT_SIGN] == 0.0
-        if sticks and not contacts.number[p, CLOSED] > 0.0:
+        closed = contacts.number[friction.gap[w], arrays.CLOSED] > 0.0
+        sticks = closed and number[w, arrays.NEXT_SIGN] == 0.0
+        if sticks and not contacts.number[p, arrays.CLOSED] > 0.0:
             move_zero(scratch, contacts, p)
-        contacts.number[p, SIGN] = number[w, NEXT_SIGN] if closed else 0.0
-        contacts.number[p, CLOSED] = 1.0 if sticks else 0.0
-        contacts.chosen[TAKING, p] = 1 if sticks else 0
+        contacts.number[p, arrays.SIGN] = number[w, arrays.NEXT_SIGN] if closed else 0.0
+        contacts.number[p, arrays.CLOSED] = 1.0 if sticks else 0.0
+        contacts.chosen[arrays.TAKING, p] = 1 if sticks else 0

@@ -18,24 +18,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, internal, merged
-from mbsd.dynamics.events.arrays import (
-    APART,
-    BEYOND,
-    CLOSED,
-    CLUTCH,
-    DIVIDES,
-    FAILURE,
-    KIND,
-    LENGTH,
-    PARTS,
-    ROW,
-    SHARING,
-    SIGN,
-    START,
-    STATIC,
-    TRYING,
-    VALUE,
-)
+from mbsd.dynamics.events import arrays
 from mbsd.dynamics.events.following import advance_to
 from mbsd.dynamics.events.rows import any_held, gaps_of, read_gaps
 from mbsd.dynamics.events.sticking.together import read_ways
@@ -53,8 +36,8 @@ def fit(dyn, contacts, state):
     bends(dyn, state.y, state.dy, contacts.rates[1])
     start = before.clock[TIME]
     h = state.clock[TIME] - start
-    contacts.clock[START] = start
-    contacts.clock[LENGTH] = h
+    contacts.clock[arrays.START] = start
+    contacts.clock[arrays.LENGTH] = h
     for c in range(state.y.shape[1]):
         q0 = before.y[0, c]
         v0 = h * before.dy[0, c]
@@ -74,13 +57,13 @@ def fit(dyn, contacts, state):
 def stand_at(dyn, contacts, x):
     """Fill contacts.pose at the part x of the step; returns the time (s)."""
     k = contacts.quintic
-    h = contacts.clock[LENGTH]
+    h = contacts.clock[arrays.LENGTH]
     for c in range(k.shape[1]):
         contacts.pose[0, c] = k[0, c] + x * (k[1, c] + x * (k[2, c] + x * (k[3, c] + x * (k[4, c] + x * k[5, c]))))
         rate = k[1, c] + x * (2 * k[2, c] + x * (3 * k[3, c] + x * (4 * k[4, c] + x * 5 * k[5, c])))
         contacts.pose[1, c] = rate / h
     speeds(dyn, contacts.pose[0], contacts.pose[1])
-    return contacts.clock[START] + h * x
+    return contacts.clock[arrays.START] + h * x
 
 
 @merged
@@ -89,21 +72,25 @@ def _values(dyn, scratch, contacts, y, forces):
     friction = contacts.friction
     count = gaps_of(contacts)
     for k in range(count):
-        row = contacts.place[k, ROW]
-        if contacts.number[k, CLOSED] > 0.0:
-            contacts.vector[VALUE, k] = -contacts.lam[row]
-        elif contacts.place[k, KIND] == CLUTCH:
-            contacts.vector[VALUE, k] = along(dyn, scratch, row, y[1])
+        row = contacts.place[k, arrays.ROW]
+        if contacts.number[k, arrays.CLOSED] > 0.0:
+            contacts.vector[arrays.VALUE, k] = -contacts.lam[row]
+        elif contacts.place[k, arrays.KIND] == arrays.CLUTCH:
+            contacts.vector[arrays.VALUE, k] = along(dyn, scratch, row, y[1])
         else:
-            contacts.vector[VALUE, k] = scratch.ws.phi[row]
+            contacts.vector[arrays.VALUE, k] = scratch.ws.phi[row]
     for w in range(friction.gap.shape[0]):
-        row = contacts.place[count + w, ROW]
-        if contacts.number[count + w, CLOSED] > 0.0:
-            normal = -contacts.lam[contacts.place[friction.gap[w], ROW]]
-            contacts.vector[VALUE, count + w] = friction.number[w, STATIC] * normal - abs(contacts.lam[row])
+        row = contacts.place[count + w, arrays.ROW]
+        if contacts.number[count + w, arrays.CLOSED] > 0.0:
+            normal = -contacts.lam[contacts.place[friction.gap[w], arrays.ROW]]
+            contacts.vector[arrays.VALUE, count + w] = friction.number[w, arrays.STATIC] * normal - abs(
+                contacts.lam[row]
+            )
         else:
-            contacts.vector[VALUE, count + w] = contacts.number[count + w, SIGN] * along(dyn, scratch, row, y[1])
-    if contacts.clock[DIVIDES] > 0.0 or contacts.clock[SHARING] != APART:
+            contacts.vector[arrays.VALUE, count + w] = contacts.number[count + w, arrays.SIGN] * along(
+                dyn, scratch, row, y[1]
+            )
+    if contacts.clock[arrays.DIVIDES] > 0.0 or contacts.clock[arrays.SHARING] != arrays.APART:
         read_ways(dyn, scratch, contacts, y, forces)
 
 
@@ -122,16 +109,16 @@ def sample(dyn, scratch, contacts):
     """Fill contacts.samples."""
     forces = False
     for k in range(contacts.place.shape[0]):
-        forces = forces or contacts.number[k, CLOSED] > 0.0
-    for i in range(PARTS.shape[0]):
-        t = stand_at(dyn, contacts, PARTS[i])
+        forces = forces or contacts.number[k, arrays.CLOSED] > 0.0
+    for i in range(arrays.PARTS.shape[0]):
+        t = stand_at(dyn, contacts, arrays.PARTS[i])
         if forces:
             derivative(dyn, scratch, t, contacts.pose, contacts.rates, contacts.lam)
         else:
             measure_gaps(dyn, scratch, t, contacts.pose[0])
         _values(dyn, scratch, contacts, contacts.pose, forces)
         for k in range(contacts.place.shape[0]):
-            contacts.samples[k, i] = contacts.vector[VALUE, k]
+            contacts.samples[k, i] = contacts.vector[arrays.VALUE, k]
 
 
 @internal
@@ -139,8 +126,8 @@ def _value(dyn, scratch, contacts, t, y, k):
     """Return the guard of row k at a state y (2, 3 nb); behind the last row are events of the user."""
     if k >= contacts.place.shape[0]:
         return signed(contacts.events, k - contacts.place.shape[0], t, y)
-    read(dyn, scratch, contacts, t, y, contacts.number[k, CLOSED] > 0.0)
-    return contacts.vector[VALUE, k]
+    read(dyn, scratch, contacts, t, y, contacts.number[k, arrays.CLOSED] > 0.0)
+    return contacts.vector[arrays.VALUE, k]
 
 
 @apart
@@ -164,11 +151,11 @@ def of_motion(dyn, scratch, contacts, stepping, k, t):
     if t > trial.clock[TIME]:
         trial.count[NEXT] = stepping.out.t.shape[0]
         own = dyn if any_held(contacts) else without_contacts(dyn, contacts)
-        contacts.clock[TRYING] = 1.0
+        contacts.clock[arrays.TRYING] = 1.0
         status = advance_to(own, scratch, trial, contacts, stepping, t, NO_LIMIT)
-        contacts.clock[TRYING] = 0.0
+        contacts.clock[arrays.TRYING] = 0.0
         if status != REACHED:
-            contacts.clock[FAILURE] = status
+            contacts.clock[arrays.FAILURE] = status
             return math.nan
     return at_state(dyn, scratch, contacts, trial, k)
 
@@ -176,4 +163,4 @@ def of_motion(dyn, scratch, contacts, stepping, k, t):
 @internal
 def beyond_time(contacts):
     """Return the time (s) at which the guard that was met is beyond zero."""
-    return contacts.clock[START] + contacts.clock[LENGTH] * contacts.clock[BEYOND]
+    return contacts.clock[arrays.START] + contacts.clock[arrays.LENGTH] * contacts.clock[arrays.BEYOND]

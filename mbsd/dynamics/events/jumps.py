@@ -19,51 +19,8 @@ round are equal).
 from __future__ import annotations
 
 from mbsd.compiling.jit import apart, internal, kernel
-from mbsd.dynamics.events.arrays import (
-    APART,
-    BESIDE,
-    CLOSED,
-    CLUTCH,
-    ENERGY,
-    FRICTION,
-    GAP,
-    GIVEN,
-    HELD,
-    JOINTS,
-    KEPT,
-    KIND,
-    KINETIC,
-    LOGGED,
-    NEAR,
-    NORMAL,
-    PUSH,
-    RATE,
-    RELEASED,
-    REST,
-    RESTITUTION,
-    ROW,
-    SETTLE,
-    SHARING,
-    SIGN,
-    SLIDE,
-    STAYING,
-    TAKING,
-    TOGETHER,
-    TOUCHING,
-    WAY,
-)
+from mbsd.dynamics.events import arrays, rows
 from mbsd.dynamics.events.friction import note_met, one_by_one, slide_or_stick, solve_with_friction
-from mbsd.dynamics.events.rows import (
-    find_answers,
-    find_rates,
-    gaps_of,
-    give,
-    hold_rows,
-    keep_independent,
-    move_zero,
-    release_rows,
-    stop,
-)
 from mbsd.dynamics.events.sticking.deciding import decide
 from mbsd.dynamics.events.sticking.sharing import stand
 from mbsd.dynamics.formulation import derivative
@@ -83,7 +40,7 @@ CLOSE = 1e2
 def take_ways(contacts, flags):
     """Put the ways of contacts in ``flags`` (c,) there as well, and none of joints."""
     gap = contacts.friction.gap
-    gaps = gaps_of(contacts)
+    gaps = rows.gaps_of(contacts)
     for k in range(gaps, flags.shape[0]):
         flags[k] = flags[gap[k - gaps]] if k - gaps < gap.shape[0] else 0
 
@@ -92,15 +49,15 @@ def take_ways(contacts, flags):
 def find_touching(scratch, contacts, met):
     """Fill chosen[TOUCHING] with the gaps that are closed, of ``met`` at any rate; returns how many."""
     gap = contacts.friction.gap
-    gaps = gaps_of(contacts)
+    gaps = rows.gaps_of(contacts)
     struck = gap[met - gaps] if gaps <= met < gaps + gap.shape[0] else met
     touching = 0
     for k in range(gaps):
-        near = scratch.ws.phi[contacts.place[k, ROW]] <= CLOSE * contacts.number[k, NEAR]
-        clutch = contacts.place[k, KIND] == CLUTCH
-        contacts.chosen[TOUCHING, k] = 1 if near or k == struck or clutch else 0
-        touching += contacts.chosen[TOUCHING, k]
-    take_ways(contacts, contacts.chosen[TOUCHING])
+        near = scratch.ws.phi[contacts.place[k, arrays.ROW]] <= CLOSE * contacts.number[k, arrays.NEAR]
+        clutch = contacts.place[k, arrays.KIND] == arrays.CLUTCH
+        contacts.chosen[arrays.TOUCHING, k] = 1 if near or k == struck or clutch else 0
+        touching += contacts.chosen[arrays.TOUCHING, k]
+    take_ways(contacts, contacts.chosen[arrays.TOUCHING])
     return touching
 
 
@@ -111,11 +68,15 @@ def find_staying(contacts, opens):
     ``opens``: the gap that has just opened, -1 if none has.
     """
     staying = 0
-    for k in range(gaps_of(contacts)):
-        slow = contacts.vector[RATE, k] <= max(contacts.number[k, SETTLE], contacts.number[k, REST])
-        contacts.chosen[STAYING, k] = 1 if contacts.chosen[TOUCHING, k] != 0 and slow and k != opens else 0
-        staying += contacts.chosen[STAYING, k]
-    take_ways(contacts, contacts.chosen[STAYING])
+    for k in range(rows.gaps_of(contacts)):
+        slow = contacts.vector[arrays.RATE, k] <= max(
+            contacts.number[k, arrays.SETTLE], contacts.number[k, arrays.REST]
+        )
+        contacts.chosen[arrays.STAYING, k] = (
+            1 if contacts.chosen[arrays.TOUCHING, k] != 0 and slow and k != opens else 0
+        )
+        staying += contacts.chosen[arrays.STAYING, k]
+    take_ways(contacts, contacts.chosen[arrays.STAYING])
     return staying
 
 
@@ -124,17 +85,19 @@ def _strike(dyn, scratch, contacts, v):
     """Let the contacts in chosen[TOUCHING] that approach push, in rounds; returns False where none can."""
     count = contacts.place.shape[0]
     friction = contacts.friction
-    gaps = gaps_of(contacts)
-    taking = contacts.chosen[TAKING]
+    gaps = rows.gaps_of(contacts)
+    taking = contacts.chosen[arrays.TAKING]
     vector = contacts.vector
-    normal = vector[NORMAL]
+    normal = vector[arrays.NORMAL]
     for k in range(gaps, count):
-        vector[GIVEN, k] = 0.0
+        vector[arrays.GIVEN, k] = 0.0
     for turn in range(ROUNDS + 1):
-        find_rates(dyn, scratch, contacts, v)
+        rows.find_rates(dyn, scratch, contacts, v)
         approaching = False
         for k in range(gaps):
-            fast = contacts.chosen[TOUCHING, k] != 0 and vector[RATE, k] < -contacts.number[k, REST]
+            fast = (
+                contacts.chosen[arrays.TOUCHING, k] != 0 and vector[arrays.RATE, k] < -contacts.number[k, arrays.REST]
+            )
             taking[k] = 1 if fast else 0
             approaching = approaching or fast
         if not approaching:
@@ -143,37 +106,39 @@ def _strike(dyn, scratch, contacts, v):
         bounces = False
         for k in range(gaps):
             if last:
-                taking[k] = contacts.chosen[TOUCHING, k]
-            rebound = -vector[RATE, k] * contacts.number[k, RESTITUTION]
-            none = last or rebound < contacts.number[k, SETTLE]
-            vector[GIVEN, k] = 0.0 if none else contacts.number[k, RESTITUTION]
-            bounces = bounces or (taking[k] != 0 and vector[GIVEN, k] != 0.0)
+                taking[k] = contacts.chosen[arrays.TOUCHING, k]
+            rebound = -vector[arrays.RATE, k] * contacts.number[k, arrays.RESTITUTION]
+            none = last or rebound < contacts.number[k, arrays.SETTLE]
+            vector[arrays.GIVEN, k] = 0.0 if none else contacts.number[k, arrays.RESTITUTION]
+            bounces = bounces or (taking[k] != 0 and vector[arrays.GIVEN, k] != 0.0)
         take_ways(contacts, taking)
         for w in range(friction.gap.shape[0]):
-            friction.number[w, BESIDE] = 0.0
-        if not solve_with_friction(contacts, contacts.compliance, vector[RATE], KINETIC, normal):
+            friction.number[w, arrays.BESIDE] = 0.0
+        if not solve_with_friction(contacts, contacts.compliance, vector[arrays.RATE], arrays.KINETIC, normal):
             return False
-        give(contacts, v, vector[NORMAL])
-        since = int(contacts.clock[LOGGED])
+        rows.give(contacts, v, vector[arrays.NORMAL])
+        since = int(contacts.clock[arrays.LOGGED])
         _log_pushes(contacts, since)
         if not bounces:
             continue
         for k in range(gaps):
-            vector[GIVEN, k] *= vector[NORMAL, k]
+            vector[arrays.GIVEN, k] *= vector[arrays.NORMAL, k]
         for w in range(friction.gap.shape[0]):
-            friction.number[w, BESIDE] = friction.number[w, KINETIC] * vector[GIVEN, friction.gap[w]]
-        find_rates(dyn, scratch, contacts, v)
+            friction.number[w, arrays.BESIDE] = (
+                friction.number[w, arrays.KINETIC] * vector[arrays.GIVEN, friction.gap[w]]
+            )
+        rows.find_rates(dyn, scratch, contacts, v)
         for k in range(count):
             for j in range(gaps):
                 if taking[k] != 0 and taking[j] != 0:
-                    vector[RATE, k] += contacts.compliance[k, j] * vector[GIVEN, j]
-        if not solve_with_friction(contacts, contacts.compliance, vector[RATE], KINETIC, normal):
+                    vector[arrays.RATE, k] += contacts.compliance[k, j] * vector[arrays.GIVEN, j]
+        if not solve_with_friction(contacts, contacts.compliance, vector[arrays.RATE], arrays.KINETIC, normal):
             return False
         for k in range(count):
-            vector[PUSH, k] = vector[GIVEN, k] + vector[NORMAL, k]
-        give(contacts, v, vector[PUSH])
-        for i in range(since, int(contacts.clock[LOGGED])):
-            contacts.log[i, 1] += vector[PUSH, int(contacts.log[i, 0])]
+            vector[arrays.PUSH, k] = vector[arrays.GIVEN, k] + vector[arrays.NORMAL, k]
+        rows.give(contacts, v, vector[arrays.PUSH])
+        for i in range(since, int(contacts.clock[arrays.LOGGED])):
+            contacts.log[i, 1] += vector[arrays.PUSH, int(contacts.log[i, 0])]
     return True
 
 
@@ -182,12 +147,12 @@ def _log_pushes(contacts, since):
     """Write the impulses of a round in vector[NORMAL] to the log, behind its first ``since`` rows."""
     if contacts.log.shape[0] == 0:
         return
-    for k in range(gaps_of(contacts)):
-        if contacts.chosen[TAKING, k] != 0:
+    for k in range(rows.gaps_of(contacts)):
+        if contacts.chosen[arrays.TAKING, k] != 0:
             contacts.log[since, 0] = k
-            contacts.log[since, 1] = contacts.vector[NORMAL, k]
+            contacts.log[since, 1] = contacts.vector[arrays.NORMAL, k]
             since += 1
-    contacts.clock[LOGGED] = since
+    contacts.clock[arrays.LOGGED] = since
 
 
 @internal
@@ -204,7 +169,7 @@ def impacts(dyn, scratch, contacts, v):
     before = _kinetic_energy(dyn, v)
     if not _strike(dyn, scratch, contacts, v):
         return False
-    contacts.clock[ENERGY] = _kinetic_energy(dyn, v) - before
+    contacts.clock[arrays.ENERGY] = _kinetic_energy(dyn, v) - before
     return True
 
 
@@ -213,7 +178,7 @@ def _any_joint(contacts):
     """Return True if there is a joint that may stick and that no event has released."""
     there = False
     for k in range(contacts.place.shape[0] - contacts.sticks.joint.shape[0], contacts.place.shape[0]):
-        there = there or contacts.number[k, RELEASED] == 0.0
+        there = there or contacts.number[k, arrays.RELEASED] == 0.0
     return there
 
 
@@ -222,14 +187,14 @@ def _settle(dyn, scratch, contacts, state, staying, halted, slipping, touched):
     """Decide, and again once the ``staying`` gaps that hold are at rest; returns False where nothing is possible."""
     if staying == 0 and not _any_joint(contacts):
         for k in range(contacts.place.shape[0]):
-            contacts.vector[NORMAL, k] = 0.0
+            contacts.vector[arrays.NORMAL, k] = 0.0
         return True
     if not decide(dyn, scratch, contacts, state, halted, slipping, touched):
         return False
     for _ in range(staying):
         if not moving(dyn, scratch, contacts, state.y[1]):
             return True
-        stop(dyn, scratch, contacts, state.y[1])
+        rows.stop(dyn, scratch, contacts, state.y[1])
         if not decide(dyn, scratch, contacts, state, halted, slipping, touched):
             return False
     return True
@@ -240,35 +205,35 @@ def _hold_decided(dyn, scratch, contacts):
     """Let rows hold as was decided."""
     count = contacts.place.shape[0]
     number = contacts.number
-    taking = contacts.chosen[TAKING]
+    taking = contacts.chosen[arrays.TAKING]
     joints = count - contacts.sticks.joint.shape[0]
-    gaps = gaps_of(contacts)
+    gaps = rows.gaps_of(contacts)
     for k in range(gaps):
-        taking[k] = 1 if contacts.vector[NORMAL, k] > 0.0 else 0
-        number[k, CLOSED] = 1.0 * taking[k]
-        if taking[k] != 0 and contacts.place[k, KIND] == CLUTCH:
-            move_zero(scratch, contacts, k)
+        taking[k] = 1 if contacts.vector[arrays.NORMAL, k] > 0.0 else 0
+        number[k, arrays.CLOSED] = 1.0 * taking[k]
+        if taking[k] != 0 and contacts.place[k, arrays.KIND] == arrays.CLUTCH:
+            rows.move_zero(scratch, contacts, k)
     slide_or_stick(scratch, contacts)
     for k in range(joints, count):
         taking[k] = 0
-        if number[k, RELEASED] != 0.0:
+        if number[k, arrays.RELEASED] != 0.0:
             continue
-        taking[k] = 1 if number[k, SIGN] == 0.0 else 0
-        dyn.loads.friction_number[contacts.place[k, FRICTION], SENSE] = number[k, SIGN]
-        if taking[k] != 0 and number[k, CLOSED] == 0.0:
-            move_zero(scratch, contacts, k)
-        number[k, CLOSED] = 1.0 * taking[k]
-    keep_independent(contacts, taking)
+        taking[k] = 1 if number[k, arrays.SIGN] == 0.0 else 0
+        dyn.loads.friction_number[contacts.place[k, arrays.FRICTION], SENSE] = number[k, arrays.SIGN]
+        if taking[k] != 0 and number[k, arrays.CLOSED] == 0.0:
+            rows.move_zero(scratch, contacts, k)
+        number[k, arrays.CLOSED] = 1.0 * taking[k]
+    rows.keep_independent(contacts, taking)
     sharing = False
     mixed = False
     alone = contacts.sticks.borne.shape[0] == 0 or one_by_one(contacts)
     for k in range(count):
-        number[k, HELD] = 1.0 * contacts.chosen[KEPT, k]
+        number[k, arrays.HELD] = 1.0 * contacts.chosen[arrays.KEPT, k]
         if k >= gaps and taking[k] != 0:
-            sharing = sharing or (number[k, HELD] == 0.0 and (k >= joints or not alone))
+            sharing = sharing or (number[k, arrays.HELD] == 0.0 and (k >= joints or not alone))
             mixed = mixed or k < joints
-    contacts.clock[SHARING] = (TOGETHER if mixed else JOINTS) if sharing else APART
-    hold_rows(dyn, contacts)
+    contacts.clock[arrays.SHARING] = (arrays.TOGETHER if mixed else arrays.JOINTS) if sharing else arrays.APART
+    rows.hold_rows(dyn, contacts)
 
 
 @apart
@@ -279,24 +244,28 @@ def resolve(dyn, scratch, contacts, state, met):
     """
     chosen = contacts.chosen
     v = state.y[1]
-    closed = met >= 0 and contacts.number[met, CLOSED] > 0.0
-    joint = met >= 0 and contacts.place[met, KIND] == WAY
-    together = closed and contacts.place[met, KIND] == SLIDE and contacts.clock[SHARING] == TOGETHER
+    closed = met >= 0 and contacts.number[met, arrays.CLOSED] > 0.0
+    joint = met >= 0 and contacts.place[met, arrays.KIND] == arrays.WAY
+    together = (
+        closed
+        and contacts.place[met, arrays.KIND] == arrays.SLIDE
+        and contacts.clock[arrays.SHARING] == arrays.TOGETHER
+    )
     note_met(contacts, -1 if together else met, state.lam)
-    release_rows(dyn, contacts)
+    rows.release_rows(dyn, contacts)
     stand(dyn, scratch, contacts, state.clock[TIME], state.y)
     touching = find_touching(scratch, contacts, met)
     for k in range(contacts.place.shape[0]):
-        way = contacts.place[k, KIND] == WAY and contacts.number[k, RELEASED] == 0.0
-        chosen[TAKING, k] = 1 if chosen[TOUCHING, k] != 0 or way else 0
-    find_answers(dyn, scratch, contacts, chosen[TAKING])
+        way = contacts.place[k, arrays.KIND] == arrays.WAY and contacts.number[k, arrays.RELEASED] == 0.0
+        chosen[arrays.TAKING, k] = 1 if chosen[arrays.TOUCHING, k] != 0 or way else 0
+    rows.find_answers(dyn, scratch, contacts, chosen[arrays.TAKING])
     if touching > 0 and not impacts(dyn, scratch, contacts, v):
         return False
-    find_rates(dyn, scratch, contacts, v)
+    rows.find_rates(dyn, scratch, contacts, v)
     staying = find_staying(contacts, met if closed else -1)
     halted = met if joint and not closed else -1
     slipping = (joint and closed) or together
-    touched = met if met >= 0 and contacts.place[met, KIND] == GAP and not closed else -1
+    touched = met if met >= 0 and contacts.place[met, arrays.KIND] == arrays.GAP and not closed else -1
     if not _settle(dyn, scratch, contacts, state, staying, halted, slipping, touched):
         return False
     _hold_decided(dyn, scratch, contacts)
@@ -310,32 +279,35 @@ def moving(dyn, scratch, contacts, v):
     Joints that stick are among them.
     """
     moving = False
-    find_rates(dyn, scratch, contacts, v)
+    rows.find_rates(dyn, scratch, contacts, v)
     gap = contacts.friction.gap
-    gaps = gaps_of(contacts)
+    gaps = rows.gaps_of(contacts)
     for k in range(gaps):
-        holds = contacts.vector[NORMAL, k] > 0.0
-        rate, rest = contacts.vector[RATE, k], contacts.number[k, REST]
-        creeps = contacts.chosen[STAYING, k] != 0 and not holds and rate < -CREEP * rest
-        contacts.chosen[TAKING, k] = 1 if holds or creeps else 0
+        holds = contacts.vector[arrays.NORMAL, k] > 0.0
+        rate, rest = contacts.vector[arrays.RATE, k], contacts.number[k, arrays.REST]
+        creeps = contacts.chosen[arrays.STAYING, k] != 0 and not holds and rate < -CREEP * rest
+        contacts.chosen[arrays.TAKING, k] = 1 if holds or creeps else 0
         moving = moving or creeps or (holds and abs(rate) > rest)
     for w in range(gap.shape[0]):
         p = gaps + w
-        rests = contacts.vector[NORMAL, gap[w]] > 0.0 and abs(contacts.vector[RATE, p]) <= contacts.number[p, REST]
-        contacts.chosen[TAKING, p] = 1 if rests else 0
+        rests = (
+            contacts.vector[arrays.NORMAL, gap[w]] > 0.0
+            and abs(contacts.vector[arrays.RATE, p]) <= contacts.number[p, arrays.REST]
+        )
+        contacts.chosen[arrays.TAKING, p] = 1 if rests else 0
     for k in range(gaps + gap.shape[0], contacts.place.shape[0]):
-        sticks = contacts.number[k, SIGN] == 0.0 and contacts.number[k, RELEASED] == 0.0
-        contacts.chosen[TAKING, k] = 1 if sticks else 0
+        sticks = contacts.number[k, arrays.SIGN] == 0.0 and contacts.number[k, arrays.RELEASED] == 0.0
+        contacts.chosen[arrays.TAKING, k] = 1 if sticks else 0
     if moving:
-        keep_independent(contacts, contacts.chosen[TAKING])
+        rows.keep_independent(contacts, contacts.chosen[arrays.TAKING])
     return moving
 
 
 @kernel
 def strike(dyn, scratch, contacts, t, y):
     """Change velocities y[1] by the impacts of the contacts in chosen[TOUCHING]; False where none are possible."""
-    release_rows(dyn, contacts)
-    take_ways(contacts, contacts.chosen[TOUCHING])
+    rows.release_rows(dyn, contacts)
+    take_ways(contacts, contacts.chosen[arrays.TOUCHING])
     derivative(dyn, scratch, t, y, contacts.rates, contacts.lam)
-    find_answers(dyn, scratch, contacts, contacts.chosen[TOUCHING])
+    rows.find_answers(dyn, scratch, contacts, contacts.chosen[arrays.TOUCHING])
     return impacts(dyn, scratch, contacts, y[1])

@@ -15,51 +15,13 @@ import math
 
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import inlined, internal, kernel, lazy
-from mbsd.dynamics.events.arrays import (
-    ACTED,
-    AT_ONCE,
-    BEFORE_AND_AFTER,
-    BEGUN,
-    BEGUN_NOW,
-    CLOSED,
-    ENERGY,
-    FAILURE,
-    GAP,
-    HELD,
-    KIND,
-    LOAD,
-    LOGGED,
-    MET,
-    NEVER,
-    NOT_BEGUN,
-    PAUSES,
-    PENDING,
-    RESUMED,
-    ROW,
-    SCALE,
-    SHARING,
-    WHEN,
-    WHICH,
-    Stepping,
-)
+from mbsd.dynamics.events import arrays, users
 from mbsd.dynamics.events.following import advance_to
 from mbsd.dynamics.events.guards import fit
 from mbsd.dynamics.events.jumps import resolve
 from mbsd.dynamics.events.rows import any_held, hold_rows
 from mbsd.dynamics.events.search import event_time, first_met
 from mbsd.dynamics.events.sticking.together import share_here, share_outputs
-from mbsd.dynamics.events.users import (
-    ACTS,
-    ENDED,
-    HAPPENED,
-    PASSED,
-    begin_sides,
-    find_sides,
-    finish_action,
-    first_reached,
-    happen,
-    hold_joints,
-)
 from mbsd.dynamics.formulation import begin_run, measure, without_contacts
 from mbsd.dynamics.independent.arrays import Embedding
 from mbsd.dynamics.integrators.advance import NO_LIMIT, copy_state, cross
@@ -90,16 +52,16 @@ def _restart(dyn, scratch, contacts, state):
         load = max(load, abs(dyn.weight[c]))
     for r in range(state.lam.shape[0]):
         load = max(load, abs(state.lam[r]))
-    contacts.clock[LOAD] = load
+    contacts.clock[arrays.LOAD] = load
     if contacts.events.table.shape[0] > 0:
-        find_sides(dyn, contacts.events, state)
+        users.find_sides(dyn, contacts.events, state)
 
 
 @internal
 def _resolve(dyn, scratch, contacts, state, met):
-    contacts.clock[LOGGED] = 0.0
-    contacts.clock[ENERGY] = 0.0
-    contacts.clock[FAILURE] = 0.0
+    contacts.clock[arrays.LOGGED] = 0.0
+    contacts.clock[arrays.ENERGY] = 0.0
+    contacts.clock[arrays.FAILURE] = 0.0
     if contacts.place.shape[0] == 0:
         return True
     return resolve(dyn, scratch, contacts, state, met)
@@ -109,24 +71,24 @@ def _resolve(dyn, scratch, contacts, state, met):
 def _find_reached(dyn, contacts, state):
     """Let the first event happen next whose value has come to zero and stays there."""
     if contacts.events.table.shape[0] > 0:
-        reached = first_reached(dyn, contacts.events, state)
+        reached = users.first_reached(dyn, contacts.events, state)
         if reached >= 0:
-            contacts.clock[PENDING] = 1.0 + contacts.place.shape[0] + reached
+            contacts.clock[arrays.PENDING] = 1.0 + contacts.place.shape[0] + reached
 
 
 @internal
 def _begin(dyn, scratch, contacts, state):
     """Close contacts at the start and resolve velocities that they forbid; False if that is impossible."""
-    contacts.clock[BEGUN] = BEGUN_NOW
+    contacts.clock[arrays.BEGUN] = arrays.BEGUN_NOW
     measure(dyn, scratch, state.clock[TIME], state.y[0])
     for k in range(contacts.place.shape[0]):
-        contacts.number[k, CLOSED] = 0.0
-        contacts.number[k, HELD] = 0.0
-        gap = contacts.place[k, KIND] == GAP
-        if gap and scratch.ws.phi[contacts.place[k, ROW]] * contacts.number[k, SCALE] < -INSIDE:
+        contacts.number[k, arrays.CLOSED] = 0.0
+        contacts.number[k, arrays.HELD] = 0.0
+        gap = contacts.place[k, arrays.KIND] == arrays.GAP
+        if gap and scratch.ws.phi[contacts.place[k, arrays.ROW]] * contacts.number[k, arrays.SCALE] < -INSIDE:
             return False
     if contacts.events.table.shape[0] > 0:
-        begin_sides(contacts.events, state)
+        users.begin_sides(contacts.events, state)
     if not _resolve(dyn, scratch, contacts, state, -1):
         return False
     _restart(dyn, scratch, contacts, state)
@@ -137,11 +99,11 @@ def _begin(dyn, scratch, contacts, state):
 @internal
 def _has_room(contacts, t):
     """Count an event at a time (s); False if there are too many."""
-    contacts.clock[AT_ONCE] = contacts.clock[AT_ONCE] + 1.0 if contacts.clock[WHEN] == t else 1.0
-    contacts.clock[WHEN] = t
-    contacts.clock[MET] += 1.0
-    few = contacts.clock[MET] <= MOST or contacts.clock[PAUSES] != NEVER
-    return contacts.clock[AT_ONCE] <= AT_ONE_TIME and few
+    contacts.clock[arrays.AT_ONCE] = contacts.clock[arrays.AT_ONCE] + 1.0 if contacts.clock[arrays.WHEN] == t else 1.0
+    contacts.clock[arrays.WHEN] = t
+    contacts.clock[arrays.MET] += 1.0
+    few = contacts.clock[arrays.MET] <= MOST or contacts.clock[arrays.PAUSES] != arrays.NEVER
+    return contacts.clock[arrays.AT_ONCE] <= AT_ONE_TIME and few
 
 
 @internal
@@ -150,15 +112,15 @@ def _go_to(own, scratch, state, contacts, stepping, t):
     following = contacts.before.count[NEXT]
     t_out = stepping.out.t
     outputs = following < t_out.shape[0] and t_out[following] <= t
-    if contacts.clock[FAILURE] == 0.0 and contacts.trial.clock[TIME] == t and not outputs:
+    if contacts.clock[arrays.FAILURE] == 0.0 and contacts.trial.clock[TIME] == t and not outputs:
         copy_state(state, contacts.trial)
         state.count[NEXT] = following
         return
     copy_state(state, contacts.before)
-    if contacts.clock[FAILURE] == 0.0 and t > state.clock[TIME]:
+    if contacts.clock[arrays.FAILURE] == 0.0 and t > state.clock[TIME]:
         status = advance_to(own, scratch, state, contacts, stepping, t, NO_LIMIT)
         if status != REACHED and status != PAUSED:
-            contacts.clock[FAILURE] = status
+            contacts.clock[arrays.FAILURE] = status
 
 
 @internal
@@ -167,7 +129,7 @@ def _end(dyn, scratch, state, contacts, out):
     first = state.count[NEXT]
     while state.count[NEXT] < out.t.shape[0]:
         record_here(scratch, state, out)
-    if contacts.clock[SHARING] > 0.0:
+    if contacts.clock[arrays.SHARING] > 0.0:
         share_outputs(dyn, scratch, contacts, out, first, state.count[NEXT])
 
 
@@ -180,13 +142,13 @@ def _step(dyn, scratch, state, contacts, stepping, end):
     cross(state, stepping.before, stepping.after)
     begin_run(own, scratch, state)
     if contacts.events.table.shape[0] > 0:
-        find_sides(dyn, contacts.events, state)
+        users.find_sides(dyn, contacts.events, state)
     copy_state(contacts.before, state)
     status = advance_to(own, scratch, state, contacts, stepping, end, 1)
     if status != REACHED and status != PAUSED:
         return status
     met = -1
-    contacts.clock[FAILURE] = 0.0
+    contacts.clock[arrays.FAILURE] = 0.0
     if state.clock[TIME] > contacts.before.clock[TIME]:
         fit(dyn, contacts, state)
         contacts.trial.clock[TIME] = -math.inf
@@ -194,14 +156,14 @@ def _step(dyn, scratch, state, contacts, stepping, end):
     if met >= 0:
         t = event_time(dyn, scratch, contacts, stepping, met)
         _go_to(own, scratch, state, contacts, stepping, t)
-    if contacts.clock[SHARING] > 0.0:
+    if contacts.clock[arrays.SHARING] > 0.0:
         share_outputs(dyn, scratch, contacts, stepping.out, contacts.before.count[NEXT], state.count[NEXT])
-    if contacts.clock[FAILURE] != 0.0:
-        return int(contacts.clock[FAILURE])
+    if contacts.clock[arrays.FAILURE] != 0.0:
+        return int(contacts.clock[arrays.FAILURE])
     if met < 0:
         return REACHED if status == REACHED and state.clock[TIME] >= end else PAUSED
     begin_run(own, scratch, state)
-    contacts.clock[PENDING] = 1.0 + met
+    contacts.clock[arrays.PENDING] = 1.0 + met
     return FOUND
 
 
@@ -210,24 +172,24 @@ def _jump(dyn, scratch, state, contacts, out):
     """Let what is PENDING happen at the state; returns a status."""
     clock = contacts.clock
     count = contacts.place.shape[0]
-    met = int(clock[PENDING]) - 1
-    passed = HAPPENED
-    if met >= count and clock[ACTED] != 0.0:
-        finish_action(dyn, scratch, contacts, state, met - count)
+    met = int(clock[arrays.PENDING]) - 1
+    passed = users.HAPPENED
+    if met >= count and clock[arrays.ACTED] != 0.0:
+        users.finish_action(dyn, scratch, contacts, state, met - count)
     elif met >= count:
-        passed = happen(dyn, scratch, contacts, state, met - count)
-        if passed == ACTS:
+        passed = users.happen(dyn, scratch, contacts, state, met - count)
+        if passed == users.ACTS:
             return ACTING
-    clock[WHICH] = 0.0 if passed == PASSED else 1.0 + met
-    clock[PENDING] = 0.0
-    clock[ACTED] = 0.0
-    if passed == ENDED:
-        if clock[PAUSES] == NEVER:
+    clock[arrays.WHICH] = 0.0 if passed == users.PASSED else 1.0 + met
+    clock[arrays.PENDING] = 0.0
+    clock[arrays.ACTED] = 0.0
+    if passed == users.ENDED:
+        if clock[arrays.PAUSES] == arrays.NEVER:
             _end(dyn, scratch, state, contacts, out)
         else:
             share_here(dyn, scratch, contacts, state)
         return OVER
-    if passed != PASSED:
+    if passed != users.PASSED:
         if not _has_room(contacts, state.clock[TIME]):
             return TOO_MANY
         if not _resolve(dyn, scratch, contacts, state, met if met < count else -1):
@@ -240,22 +202,22 @@ def _jump(dyn, scratch, state, contacts, out):
 @lazy(int)
 def _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, after):
     clock = contacts.clock
-    stepping = Stepping(settings, out, before, after)
+    stepping = arrays.Stepping(settings, out, before, after)
     hold_rows(dyn, contacts)
     hold_independent(dyn, contacts.repeated)
     if contacts.events.release.shape[0] > 0:
-        hold_joints(dyn, contacts)
-    if clock[BEGUN] == RESUMED:
-        clock[BEGUN] = BEGUN_NOW
+        users.hold_joints(dyn, contacts)
+    if clock[arrays.BEGUN] == arrays.RESUMED:
+        clock[arrays.BEGUN] = arrays.BEGUN_NOW
         _restart(dyn, scratch, contacts, state)
-    if clock[BEGUN] == NOT_BEGUN:
+    if clock[arrays.BEGUN] == arrays.NOT_BEGUN:
         if not _begin(dyn, scratch, contacts, state):
             return NOT_SOLVED
-        if clock[PAUSES] != NEVER:
+        if clock[arrays.PAUSES] != arrays.NEVER:
             return JUMPED
     taken = 0
     while True:
-        if clock[PENDING] == 0.0:
+        if clock[arrays.PENDING] == 0.0:
             if taken >= steps:
                 return PAUSED
             taken += 1
@@ -264,13 +226,13 @@ def _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, aft
                 continue
             if status != FOUND:
                 return status
-            if clock[PAUSES] == BEFORE_AND_AFTER:
+            if clock[arrays.PAUSES] == arrays.BEFORE_AND_AFTER:
                 share_here(dyn, scratch, contacts, state)
                 return FOUND
         status = _jump(dyn, scratch, state, contacts, out)
         if status != JUMPED:
             return status
-        if clock[PAUSES] != NEVER:
+        if clock[arrays.PAUSES] != arrays.NEVER:
             share_here(dyn, scratch, contacts, state)
             return JUMPED
 

@@ -5,21 +5,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, internal
-from mbsd.dynamics.events.arrays import (
-    ALONE,
-    BLOCK,
-    CLOSED,
-    HELD,
-    KEPT,
-    KINETIC,
-    RATE,
-    RELATIVE,
-    ROW,
-    SHIFT,
-    SIDE,
-    SIGN,
-    TAKING,
-)
+from mbsd.dynamics.events import arrays
 from mbsd.dynamics.formulation import along, measure_gaps, push, respond
 from mbsd.equations.system import ZERO
 
@@ -45,18 +31,20 @@ def gaps_of(contacts):
 def hold_rows(dyn, contacts):
     """Let the rows hold that should, and contacts slide as they do."""
     for k in range(contacts.place.shape[0]):
-        held = contacts.number[k, HELD] > 0.0
-        dyn.schur.rows[contacts.place[k, BLOCK], contacts.place[k, SIDE]] = contacts.place[k, ROW] if held else -1
+        held = contacts.number[k, arrays.HELD] > 0.0
+        dyn.schur.rows[contacts.place[k, arrays.BLOCK], contacts.place[k, arrays.SIDE]] = (
+            contacts.place[k, arrays.ROW] if held else -1
+        )
     gaps = gaps_of(contacts)
     for w in range(contacts.friction.gap.shape[0]):
-        dyn.sliding.table[w, 0] = contacts.friction.number[w, KINETIC] * contacts.number[gaps + w, SIGN]
+        dyn.sliding.table[w, 0] = contacts.friction.number[w, arrays.KINETIC] * contacts.number[gaps + w, arrays.SIGN]
 
 
 @internal
 def release_rows(dyn, contacts):
     """Let none of them hold, and no contact have friction."""
     for k in range(contacts.place.shape[0]):
-        dyn.schur.rows[contacts.place[k, BLOCK], contacts.place[k, SIDE]] = -1
+        dyn.schur.rows[contacts.place[k, arrays.BLOCK], contacts.place[k, arrays.SIDE]] = -1
     for w in range(dyn.sliding.table.shape[0]):
         dyn.sliding.table[w, 0] = 0.0
 
@@ -64,14 +52,14 @@ def release_rows(dyn, contacts):
 @internal
 def move_zero(scratch, contacts, k):
     """Count the way of row k from the pose of scratch.ws.phi."""
-    scratch.ws.relative[contacts.place[k, RELATIVE], ZERO] += scratch.ws.phi[contacts.place[k, ROW]]
+    scratch.ws.relative[contacts.place[k, arrays.RELATIVE], ZERO] += scratch.ws.phi[contacts.place[k, arrays.ROW]]
 
 
 @internal
 def find_rates(dyn, scratch, contacts, v):
     """Fill vector[RATE] at velocities v (3 nb,)."""
     for k in range(contacts.place.shape[0]):
-        contacts.vector[RATE, k] = along(dyn, scratch, contacts.place[k, ROW], v)
+        contacts.vector[arrays.RATE, k] = along(dyn, scratch, contacts.place[k, arrays.ROW], v)
 
 
 @apart
@@ -82,14 +70,14 @@ def find_answer(dyn, scratch, contacts, k, lam):
     """
     n3 = dyn.inverse.shape[0]
     force = contacts.force
-    row = contacts.place[k, ROW]
+    row = contacts.place[k, arrays.ROW]
     for c in range(n3):
         force[c] = 0.0
     push(dyn, scratch, row, 1.0, force)
     alone = 0.0
     for c in range(3, n3):
         alone += dyn.inverse[c] * force[c] ** 2
-    contacts.vector[ALONE, k] = alone if alone > 0.0 else 1.0
+    contacts.vector[arrays.ALONE, k] = alone if alone > 0.0 else 1.0
     respond(dyn, scratch, force, 0.0, contacts.answer[k], lam)
 
 
@@ -110,7 +98,7 @@ def read_compliance(dyn, scratch, contacts, flags):
     for k in range(count):
         for j in range(count):
             if flags[k] != 0 and flags[j] != 0:
-                row = contacts.place[j, ROW]
+                row = contacts.place[j, arrays.ROW]
                 contacts.compliance[j, k] = along(dyn, scratch, row, contacts.answer[k])
 
 
@@ -118,7 +106,7 @@ def read_compliance(dyn, scratch, contacts, flags):
 def give(contacts, v, pushes):
     """Change velocities v (3 nb,) by impulses (c,) along the rows in chosen[TAKING]."""
     for k in range(contacts.place.shape[0]):
-        if contacts.chosen[TAKING, k] != 0 and pushes[k] != 0.0:
+        if contacts.chosen[arrays.TAKING, k] != 0 and pushes[k] != 0.0:
             for c in range(3, v.shape[0]):
                 v[c] += contacts.answer[k, c] * pushes[k]
 
@@ -127,7 +115,7 @@ def give(contacts, v, pushes):
 def keep_independent(contacts, flags):
     """Fill chosen[KEPT] with the rows in ``flags`` (c,) that do not follow from earlier ones, and their factor."""
     count = contacts.place.shape[0]
-    kept = contacts.chosen[KEPT]
+    kept = contacts.chosen[arrays.KEPT]
     factor = contacts.factor
     for k in range(count):
         kept[k] = 0
@@ -153,14 +141,14 @@ def keep_independent(contacts, flags):
 def stop(dyn, scratch, contacts, v):
     """Take the rates of the rows in chosen[KEPT] off velocities v (3 nb,) by impulses along them."""
     count = contacts.place.shape[0]
-    kept = contacts.chosen[KEPT]
+    kept = contacts.chosen[arrays.KEPT]
     factor = contacts.factor
-    push = contacts.vector[SHIFT]
+    push = contacts.vector[arrays.SHIFT]
     find_rates(dyn, scratch, contacts, v)
     for k in range(count):
         push[k] = 0.0
         if kept[k] != 0:
-            push[k] = -contacts.vector[RATE, k]
+            push[k] = -contacts.vector[arrays.RATE, k]
             for j in range(k):
                 if kept[j] != 0:
                     push[k] -= factor[k, j] * push[j]
@@ -180,5 +168,5 @@ def any_held(contacts):
     """Return True if a contact is closed, or a joint sticks."""
     held = False
     for k in range(contacts.place.shape[0]):
-        held = held or contacts.number[k, CLOSED] > 0.0
+        held = held or contacts.number[k, arrays.CLOSED] > 0.0
     return held

@@ -14,34 +14,8 @@ k: a row of Contacts, whose scalar guards.py says; behind the last row come the 
 from __future__ import annotations
 
 from mbsd.compiling.jit import apart, internal, lazy
-from mbsd.dynamics.events.arrays import (
-    BEYOND,
-    CLOSED,
-    CLUTCH,
-    FAILURE,
-    GAP,
-    KIND,
-    LENGTH,
-    LOAD,
-    NEAR,
-    PARTS,
-    REST,
-    ROW,
-    SIGN,
-    SKIPPED,
-    START,
-    WAY,
-    WHERE,
-    WHICH,
-)
-from mbsd.dynamics.events.guards import (
-    at_state,
-    beyond_time,
-    of_motion,
-    on_quintic,
-    sample,
-    stand_at,
-)
+from mbsd.dynamics.events import arrays
+from mbsd.dynamics.events.guards import at_state, beyond_time, of_motion, on_quintic, sample, stand_at
 from mbsd.dynamics.events.roots import MOST_ROOTS, SAMPLES, dips_before, may_dip, root_between
 from mbsd.dynamics.events.rows import gaps_of, read_gaps
 from mbsd.dynamics.events.user_search import first_event
@@ -64,7 +38,11 @@ def still_of(contacts, k):
     """Return the size below which negative values of row k are rounding."""
     if k >= contacts.place.shape[0]:
         return 0.0
-    return ROUNDING * contacts.clock[LOAD] if contacts.number[k, CLOSED] > 0.0 else contacts.number[k, NEAR]
+    return (
+        ROUNDING * contacts.clock[arrays.LOAD]
+        if contacts.number[k, arrays.CLOSED] > 0.0
+        else contacts.number[k, arrays.NEAR]
+    )
 
 
 @apart
@@ -74,17 +52,17 @@ def _leaves(dyn, scratch, contacts, k):
     The latter may be negative by the rounding of forces: where a contact has just opened nothing else is left of it.
     Of a clutch the scalar is the rate itself.
     """
-    row = contacts.place[k, ROW]
-    rest = -contacts.number[k, REST]
+    row = contacts.place[k, arrays.ROW]
+    rest = -contacts.number[k, arrays.REST]
     t = stand_at(dyn, contacts, 1.0)
     read_gaps(dyn, scratch, t, contacts.pose[0])
     if not along(dyn, scratch, row, contacts.pose[1]) > rest:
         return False
     t = stand_at(dyn, contacts, 0.0)
     derivative(dyn, scratch, t, contacts.pose, contacts.rates, contacts.lam)
-    if contacts.place[k, KIND] == GAP and not along(dyn, scratch, row, contacts.pose[1]) > rest:
+    if contacts.place[k, arrays.KIND] == arrays.GAP and not along(dyn, scratch, row, contacts.pose[1]) > rest:
         return False
-    least = -ROUNDING * contacts.clock[LOAD] * contacts.compliance[k, k]
+    least = -ROUNDING * contacts.clock[arrays.LOAD] * contacts.compliance[k, k]
     return along(dyn, scratch, row, contacts.rates[1]) - scratch.ws.right[0, row] > least
 
 
@@ -96,12 +74,21 @@ def _falls(dyn, scratch, contacts, k, until):
     first = 0
     while first < SAMPLES - 1 and not values[first + 1] < -still:
         first += 1
-    if first == SAMPLES - 1 or PARTS[first] >= until:
+    if first == SAMPLES - 1 or arrays.PARTS[first] >= until:
         return -1.0, -1.0
     where, negative = root_between(
-        dyn, scratch, contacts, k, PARTS[first], PARTS[first + 1], values[first], values[first + 1], still, still
+        dyn,
+        scratch,
+        contacts,
+        k,
+        arrays.PARTS[first],
+        arrays.PARTS[first + 1],
+        values[first],
+        values[first + 1],
+        still,
+        still,
     )
-    is_open = contacts.place[k, KIND] in (GAP, CLUTCH) and contacts.number[k, CLOSED] == 0.0
+    is_open = contacts.place[k, arrays.KIND] in (arrays.GAP, arrays.CLUTCH) and contacts.number[k, arrays.CLOSED] == 0.0
     if where == 0.0 and is_open and _leaves(dyn, scratch, contacts, k):
         opened = 0
         while opened < SAMPLES and not values[opened] > still:
@@ -115,8 +102,8 @@ def _falls(dyn, scratch, contacts, k, until):
             scratch,
             contacts,
             k,
-            PARTS[opened],
-            PARTS[opened + 1],
+            arrays.PARTS[opened],
+            arrays.PARTS[opened + 1],
             values[opened],
             values[opened + 1],
             still,
@@ -150,8 +137,8 @@ def _may_meet(contacts, k):
 @lazy(int)
 def _fallen(dyn, scratch, contacts, state):
     """Return the first row below zero after a step with no time within it, on which a quintic is rounding; -1: none."""
-    contacts.clock[WHERE] = 1.0
-    contacts.clock[BEYOND] = 1.0
+    contacts.clock[arrays.WHERE] = 1.0
+    contacts.clock[arrays.BEYOND] = 1.0
     for k in range(contacts.place.shape[0] + contacts.events.table.shape[0]):
         if k >= contacts.place.shape[0] and contacts.events.number[k - contacts.place.shape[0], SIDE] == 0.0:
             continue
@@ -170,50 +157,50 @@ def first_met(dyn, scratch, state, contacts, stepping):
     friction = contacts.friction
     gaps = gaps_of(contacts)
     events = contacts.events.table.shape[0]
-    middle = contacts.clock[START] + 0.5 * contacts.clock[LENGTH]
-    if middle == contacts.clock[START] or middle == state.clock[TIME]:
+    middle = contacts.clock[arrays.START] + 0.5 * contacts.clock[arrays.LENGTH]
+    if middle == contacts.clock[arrays.START] or middle == state.clock[TIME]:
         return _fallen(dyn, scratch, contacts, state)
     if count > 0:
         sample(dyn, scratch, contacts)
     for e in range(events):
         contacts.events.skipped[e] = 0
     for k in range(count):
-        contacts.chosen[SKIPPED, k] = 0 if _may_meet(contacts, k) else 1
+        contacts.chosen[arrays.SKIPPED, k] = 0 if _may_meet(contacts, k) else 1
     for w in range(friction.gap.shape[0]):
-        if contacts.number[gaps + w, CLOSED] == 0.0 and contacts.number[gaps + w, SIGN] == 0.0:
-            contacts.chosen[SKIPPED, gaps + w] = 1
+        if contacts.number[gaps + w, arrays.CLOSED] == 0.0 and contacts.number[gaps + w, arrays.SIGN] == 0.0:
+            contacts.chosen[arrays.SKIPPED, gaps + w] = 1
     for _ in range(count + events):
         best = -1
         for turn in range(2 * count):  # joints at rest come last where several are met at once
             k = friction.order[turn % count]
-            resting = contacts.place[k, KIND] == WAY and contacts.number[k, CLOSED] > 0.0
-            if contacts.chosen[SKIPPED, k] != 0 or resting != (turn >= count):
+            resting = contacts.place[k, arrays.KIND] == arrays.WAY and contacts.number[k, arrays.CLOSED] > 0.0
+            if contacts.chosen[arrays.SKIPPED, k] != 0 or resting != (turn >= count):
                 continue
-            until = 2.0 if best < 0 else contacts.clock[BEYOND]
+            until = 2.0 if best < 0 else contacts.clock[arrays.BEYOND]
             where, negative = _met_of(dyn, scratch, contacts, stepping, k, until)
-            if where >= 0.0 and (best < 0 or where < contacts.clock[WHERE]):
+            if where >= 0.0 and (best < 0 or where < contacts.clock[arrays.WHERE]):
                 best = k
-                contacts.clock[WHERE] = where
-                contacts.clock[BEYOND] = negative
+                contacts.clock[arrays.WHERE] = where
+                contacts.clock[arrays.BEYOND] = negative
         if events > 0:
             best = first_event(dyn, scratch, contacts, stepping, best)
-        if best < 0 or contacts.clock[WHERE] == 0.0:
+        if best < 0 or contacts.clock[arrays.WHERE] == 0.0:
             return best
-        if contacts.clock[BEYOND] == 1.0:
+        if contacts.clock[arrays.BEYOND] == 1.0:
             value = at_state(dyn, scratch, contacts, state, best)
         else:
             t = beyond_time(contacts)
             value = of_motion(dyn, scratch, contacts, stepping, best, t)
         if value < -still_of(contacts, best):
             if best >= count and _chance(contacts, state, best - count, value):
-                contacts.clock[FAILURE] = CHANCE
-                contacts.clock[WHICH] = 1.0 + best
+                contacts.clock[arrays.FAILURE] = CHANCE
+                contacts.clock[arrays.WHICH] = 1.0 + best
                 return -1
             return best
-        if contacts.clock[FAILURE] != 0.0:
+        if contacts.clock[arrays.FAILURE] != 0.0:
             return -1
         if best < count:  # the quintic falls below zero, the motion does not
-            contacts.chosen[SKIPPED, best] = 1
+            contacts.chosen[arrays.SKIPPED, best] = 1
         else:
             contacts.events.skipped[best - count] = 1
     return -1
@@ -226,7 +213,7 @@ def _chance(contacts, state, e, value):
     A smooth function that is within rounding of zero changes by less where the state changes by less.
     """
     there = state
-    if contacts.clock[BEYOND] != 1.0:
+    if contacts.clock[arrays.BEYOND] != 1.0:
         there = contacts.trial
     jump = rounding_of(contacts.events, e, there.clock[TIME], there.y, 1.0)
     return abs(value) <= jump and rounding_of(contacts.events, e, there.clock[TIME], there.y, LESS) >= 0.5 * jump
@@ -235,8 +222,8 @@ def _chance(contacts, state, e, value):
 @apart
 def _near_root(dyn, scratch, contacts, stepping, k, first, reach):
     """Return the root (s) within ``reach`` of ``first`` by secants; a time beyond where they leave it."""
-    h = contacts.clock[LENGTH]
-    part = (first - contacts.clock[START]) / h
+    h = contacts.clock[arrays.LENGTH]
+    part = (first - contacts.clock[arrays.START]) / h
     beside = 1e-4
     rise = on_quintic(dyn, scratch, contacts, k, part + beside) - on_quintic(dyn, scratch, contacts, k, part - beside)
     slope = rise / (2.0 * beside * h)
@@ -263,8 +250,8 @@ def _near_root(dyn, scratch, contacts, stepping, k, first, reach):
 @apart
 def event_time(dyn, scratch, contacts, stepping, k):
     """Return the time (s) of the event of row k along the motion itself, as exactly as that is known."""
-    start = contacts.clock[START]
-    first = start + contacts.clock[LENGTH] * contacts.clock[WHERE]
+    start = contacts.clock[arrays.START]
+    first = start + contacts.clock[arrays.LENGTH] * contacts.clock[arrays.WHERE]
     if not first > start:
         return start
     high = beyond_time(contacts)

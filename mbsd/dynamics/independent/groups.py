@@ -29,23 +29,8 @@ import numpy as np
 from mbsd.compiling.jit import inlined, internal, lazy
 from mbsd.dynamics.independent.block import embed_block, with_body
 from mbsd.equations.laws import evaluate_laws
+from mbsd.kinematics.groups import carried
 from mbsd.kinematics.groups.blocks import BLOCK, TRAIN
-from mbsd.kinematics.groups.carried import (
-    AVOID,
-    BASE,
-    BEND,
-    COS,
-    OMEGA,
-    SIN,
-    SINE,
-    SOLVED,
-    SPEED,
-    THETA,
-    TURNS,
-    VALUE,
-    X,
-    Y,
-)
 from mbsd.kinematics.groups.cases import FLOOR, PerCoordinate, angle_of
 from mbsd.kinematics.groups.groups import FIRST, K1, K2, KIND, LAW, SECOND
 from mbsd.kinematics.groups.kinds.train import embed_train
@@ -74,7 +59,7 @@ def embed_groups(dyn, scratch):
             status = embed_train(bodies, dyn.number[e], body, rate, scratch.base, scratch.coordinate)
         else:
             status = solve_group(case, e)
-        if status != SOLVED:
+        if status != carried.SOLVED:
             return status
         if single and bodies[KIND] == BLOCK:
             total += sums[0]
@@ -85,7 +70,7 @@ def embed_groups(dyn, scratch):
                 total, push = with_body(body, rate, dyn.gravity, bodies[SECOND], total, push)
     sums[0] = total
     sums[1] = push
-    return SOLVED
+    return carried.SOLVED
 
 
 def _weights(x: np.ndarray) -> np.ndarray:
@@ -101,7 +86,7 @@ WAY, HALVINGS = 0.25, 3
 """A (rad), and how often it is tried."""
 CLOSE, CLOSE_RATE = 1e-10, 1e-9
 """Errors allowed of cosines and sines, and of rates of turning, as a part of w."""
-KEPT = SIN + 1
+KEPT = carried.SIN + 1
 """Columns of EmbeddingScratch.body that are continued."""
 SLIGHT = 1e-8
 """Turn (rad) below which a body moves straight on."""
@@ -147,7 +132,7 @@ def _velocity(rate, coordinate, b, c):
     columns = coordinate.shape[0] - 1
     total = 0.0
     for j in range(columns):
-        total += rate[b, 3 * j + c] * (coordinate[j, SPEED] if columns > 1 else 1.0)
+        total += rate[b, 3 * j + c] * (coordinate[j, carried.SPEED] if columns > 1 else 1.0)
     return total
 
 
@@ -166,18 +151,18 @@ def _joined(dyn, scratch, t, way, fastest):
         for side in range(2):
             ahead = (1.0 - 2.0 * side) * APART[i] * way / fastest
             for j in range(columns):
-                coordinate[j, VALUE] += ahead * (coordinate[j, SPEED] if columns > 1 else 1.0)
+                coordinate[j, carried.VALUE] += ahead * (coordinate[j, carried.SPEED] if columns > 1 else 1.0)
             if drive.shape[0] > 1:
                 evaluate_laws(dyn.laws, drive.shape[0], t + ahead, drive)
             status = embed_groups(dyn, scratch)
             for j in range(columns):
-                coordinate[j, VALUE] -= ahead * (coordinate[j, SPEED] if columns > 1 else 1.0)
-            if status != SOLVED:
+                coordinate[j, carried.VALUE] -= ahead * (coordinate[j, carried.SPEED] if columns > 1 else 1.0)
+            if status != carried.SOLVED:
                 return False
             for b in range(1, body.shape[0]):
                 _sum(scratch, b, i)
     for b in range(1, body.shape[0]):
-        if not abs(joined_body[1, b, COS]) + abs(joined_body[1, b, SIN]) <= CLOSE:
+        if not abs(joined_body[1, b, carried.COS]) + abs(joined_body[1, b, carried.SIN]) <= CLOSE:
             return False
         if not abs(_velocity(joined_rate[1], coordinate, b, 2)) <= CLOSE_RATE * fastest:
             return False
@@ -199,11 +184,11 @@ def _turn_about_centre(scratch, b, ahead):
     if abs(omega * ahead) > SLIGHT:
         along = s / omega
         aside = (1.0 - c) / omega
-    body[b, X] += along * vx - aside * vy
-    body[b, Y] += along * vy + aside * vx
-    cos = body[b, COS]
-    body[b, COS] = c * cos - s * body[b, SIN]
-    body[b, SIN] = s * cos + c * body[b, SIN]
+    body[b, carried.X] += along * vx - aside * vy
+    body[b, carried.Y] += along * vy + aside * vx
+    cos = body[b, carried.COS]
+    body[b, carried.COS] = c * cos - s * body[b, carried.SIN]
+    body[b, carried.SIN] = s * cos + c * body[b, carried.SIN]
     for k in range(0, rate.shape[0], 3):
         x = rate[k]
         rate[k] = c * x - s * rate[k + 1]
@@ -240,7 +225,7 @@ def _joined_alone(dyn, scratch, e, way):
         for side in range(2):
             ahead = (1.0 - 2.0 * side) * APART[i] * way
             for j in range(columns):
-                coordinate[j, VALUE] += ahead * (coordinate[j, SPEED] if columns > 1 else 1.0)
+                coordinate[j, carried.VALUE] += ahead * (coordinate[j, carried.SPEED] if columns > 1 else 1.0)
             for k in range(K1, K2 + 1):
                 if bodies[k] > 0 and (k == K1 or bodies[k] != bodies[K1]):
                     _copy(joined_body[2, bodies[k]], body[bodies[k]], KEPT)
@@ -252,15 +237,15 @@ def _joined_alone(dyn, scratch, e, way):
                     _copy(body[b], joined_body[2, b], KEPT)
                     _copy(scratch.rate[b], joined_rate[2, b], scratch.rate.shape[1])
             for j in range(columns):
-                coordinate[j, VALUE] -= ahead * (coordinate[j, SPEED] if columns > 1 else 1.0)
-            if status != SOLVED:
+                coordinate[j, carried.VALUE] -= ahead * (coordinate[j, carried.SPEED] if columns > 1 else 1.0)
+            if status != carried.SOLVED:
                 return False
             for b in bodies[: SECOND + 1]:
                 if b > 0:
                     _sum(scratch, b, i)
     for b in bodies[: SECOND + 1]:
         if b > 0:
-            if not abs(joined_body[1, b, COS]) + abs(joined_body[1, b, SIN]) <= CLOSE:
+            if not abs(joined_body[1, b, carried.COS]) + abs(joined_body[1, b, carried.SIN]) <= CLOSE:
                 return False
             if not abs(_velocity(joined_rate[1], coordinate, b, 2)) * way <= CLOSE_RATE:
                 return False
@@ -271,32 +256,32 @@ def _joined_alone(dyn, scratch, e, way):
 def _solve_alone(dyn, scratch, e, usual):
     """Solve group e, from poses beside if its squared sine is below ``usual``; returns SOLVED or DOUBTED."""
     status = _solve(dyn, scratch, e)
-    sine = dyn.number[e, SINE]
-    if not sine < usual or (status != SOLVED and not abs(sine) <= FLOOR):
+    sine = dyn.number[e, carried.SINE]
+    if not sine < usual or (status != carried.SOLVED and not abs(sine) <= FLOOR):
         return status
     bodies = dyn.group[e]
     base = scratch.base
     coordinate = scratch.coordinate
     columns = coordinate.shape[0] - 1
-    _copy(scratch.joined_rate[2, 0], coordinate[:, BASE], columns)
+    _copy(scratch.joined_rate[2, 0], coordinate[:, carried.BASE], columns)
     for b in bodies[: SECOND + 1]:
         if b > 0:
-            _copy(scratch.joined_rate[2, b], base[b], TURNS + columns)
-            if status == SOLVED:  # poses beside are predicted from this very pose
-                base[b, THETA] = angle_of(scratch.body, base, coordinate, b)
-                base[b, BEND] = 0.0
+            _copy(scratch.joined_rate[2, b], base[b], carried.TURNS + columns)
+            if status == carried.SOLVED:  # poses beside are predicted from this very pose
+                base[b, carried.THETA] = angle_of(scratch.body, base, coordinate, b)
+                base[b, carried.BEND] = 0.0
                 for j in range(columns):
-                    base[b, TURNS + j] = scratch.rate[b, 3 * j + 2]
-    if status == SOLVED:
-        _copy(coordinate[:, BASE], coordinate[:, VALUE], columns)
+                    base[b, carried.TURNS + j] = scratch.rate[b, 3 * j + 2]
+    if status == carried.SOLVED:
+        _copy(coordinate[:, carried.BASE], coordinate[:, carried.VALUE], columns)
     fastest = 0.0
     for b in bodies[: K2 + 1]:
         if b > 0:
             turning = 0.0
             for j in range(columns):
-                turning += base[b, TURNS + j] * (coordinate[j, SPEED] if columns > 1 else 1.0)
+                turning += base[b, carried.TURNS + j] * (coordinate[j, carried.SPEED] if columns > 1 else 1.0)
             fastest = max(fastest, abs(turning))
-    dyn.number[e, AVOID] = usual
+    dyn.number[e, carried.AVOID] = usual
     joined = False
     way = WAY
     for _ in range(HALVINGS):
@@ -304,11 +289,11 @@ def _solve_alone(dyn, scratch, e, usual):
         if joined:
             break
         way *= 0.5
-    dyn.number[e, AVOID] = FLOOR
-    _copy(coordinate[:, BASE], scratch.joined_rate[2, 0], columns)
+    dyn.number[e, carried.AVOID] = FLOOR
+    _copy(coordinate[:, carried.BASE], scratch.joined_rate[2, 0], columns)
     for b in bodies[: SECOND + 1]:
         if b > 0:
-            _copy(base[b], scratch.joined_rate[2, b], TURNS + columns)
+            _copy(base[b], scratch.joined_rate[2, b], carried.TURNS + columns)
     if not joined:
         return _solve(dyn, scratch, e)
     for b in bodies[: SECOND + 1]:
@@ -317,9 +302,9 @@ def _solve_alone(dyn, scratch, e, usual):
             _copy(scratch.rate[b], scratch.joined_rate[0, b], scratch.rate.shape[1])
             turning = 0.0
             for j in range(columns):
-                turning += scratch.rate[b, 3 * j + 2] * coordinate[j, SPEED]
-            scratch.body[b, OMEGA] = turning
-    return SOLVED
+                turning += scratch.rate[b, 3 * j + 2] * coordinate[j, carried.SPEED]
+            scratch.body[b, carried.OMEGA] = turning
+    return carried.SOLVED
 
 
 @lazy(int)
@@ -337,7 +322,7 @@ def bridge(dyn, scratch, t):
     for b in range(1, base.shape[0]):
         turning = 0.0
         for j in range(columns):
-            turning += base[b, TURNS + j] * (coordinate[j, SPEED] if columns > 1 else 1.0)
+            turning += base[b, carried.TURNS + j] * (coordinate[j, carried.SPEED] if columns > 1 else 1.0)
         fastest = max(fastest, abs(turning))
     joined = False
     way = WAY
@@ -352,11 +337,11 @@ def bridge(dyn, scratch, t):
     if not joined:
         number = dyn.number
         for e in range(number.shape[0]):
-            usual = number[e, AVOID]
-            number[e, AVOID] = FLOOR
+            usual = number[e, carried.AVOID]
+            number[e, carried.AVOID] = FLOOR
             status = _solve_alone(dyn, scratch, e, usual)
-            number[e, AVOID] = usual
-            if status != SOLVED:
+            number[e, carried.AVOID] = usual
+            if status != carried.SOLVED:
                 return status
     total = 0.0
     push = 0.0
@@ -369,4 +354,4 @@ def bridge(dyn, scratch, t):
             total, push = with_body(body, rate, dyn.gravity, b, total, push)
     scratch.sums[0] = total
     scratch.sums[1] = push
-    return SOLVED
+    return carried.SOLVED

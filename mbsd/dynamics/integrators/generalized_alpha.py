@@ -20,25 +20,11 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import internal, kernel
+from mbsd.dynamics import state as run_state
 from mbsd.dynamics.formulation import begin_run, close_step, derivative
 from mbsd.dynamics.integrators.full_matrix import differentiate, factor_full, solve_full, too_large
 from mbsd.dynamics.integrators.kind import Integrator, Option, register
-from mbsd.dynamics.state import (
-    ACCEPTED,
-    EVALUATIONS,
-    NEXT,
-    NO_CONVERGENCE,
-    NOT_FINITE,
-    PAUSED,
-    POWER,
-    REACHED,
-    STARTED,
-    STEP,
-    TIME,
-    WORK,
-    fixed_step,
-    record_here,
-)
+from mbsd.dynamics.state import fixed_step, record_here
 
 STAGES = 5
 PASSES = 30
@@ -82,9 +68,9 @@ def _predict(scratch, state, h, rho):
     known = scratch.stages[1]
     slope = scratch.stages[2]
     m, f, g, b = _weights(rho)
-    if state.clock[STEP] > 0.0:
+    if state.clock[run_state.STEP] > 0.0:
         for c in range(3, y.shape[1]):  # x is the acceleration at a part of a step after t
-            x[c] = state.dy[1, c] + h / state.clock[STEP] * (x[c] - state.dy[1, c])
+            x[c] = state.dy[1, c] + h / state.clock[run_state.STEP] * (x[c] - state.dy[1, c])
     for c in range(3, y.shape[1]):
         known[0, c] = y[0, c] + h * (y[1, c] + h * (0.5 - b) * x[c])
         known[1, c] = y[1, c] + h * (1.0 - g) * x[c]
@@ -103,23 +89,23 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
     n3 = y.shape[1]
     rho = settings.options[0]
     m, f, g, b = _weights(rho)
-    if state.count[STARTED] == 0:
-        state.clock[STEP] = 0.0
+    if state.count[run_state.STARTED] == 0:
+        state.clock[run_state.STEP] = 0.0
     begin_run(dyn, scratch, state)
-    if state.clock[STEP] == 0.0:  # a start, or a restart after an event
+    if state.clock[run_state.STEP] == 0.0:  # a start, or a restart after an event
         for c in range(3, n3):
             x[c] = state.dy[1, c]
     factored = 0.0  # the step that the matrix was made for
     accepted = 0
     while True:
-        t = state.clock[TIME]
-        if state.count[NEXT] < out.t.shape[0] and out.t[state.count[NEXT]] <= t:
+        t = state.clock[run_state.TIME]
+        if state.count[run_state.NEXT] < out.t.shape[0] and out.t[state.count[run_state.NEXT]] <= t:
             record_here(scratch, state, out)
             continue
         if t >= end:
-            return REACHED
+            return run_state.REACHED
         if accepted == max_steps:
-            return PAUSED
+            return run_state.PAUSED
         h, reached = fixed_step(state, out, settings, end)
         if abs(h - factored) > 1e-6 * h:
             factored = 0.0
@@ -131,11 +117,11 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
                 trial[0, c] = known[0, c] + h * h * b * x[c]
                 trial[1, c] = known[1, c] + h * g * x[c]
             derivative(dyn, scratch, reached, trial, scratch.stages[0], scratch.ws.right[1])
-            state.count[EVALUATIONS] += 1
+            state.count[run_state.EVALUATIONS] += 1
             for c in range(3, n3):
                 slope[1, c] = scratch.stages[0, 1, c]
             if factored == 0.0 or (k == 4 or k == 12):
-                state.count[EVALUATIONS] += _matrix(dyn, scratch, reached, trial, slope[1], h, rho)
+                state.count[run_state.EVALUATIONS] += _matrix(dyn, scratch, reached, trial, slope[1], h, rho)
                 factored = h
                 last = 1e300
             for c in range(3, n3):
@@ -154,24 +140,24 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
                 break
             last = moved
         if not converged:
-            return NO_CONVERGENCE
+            return run_state.NO_CONVERGENCE
         if k > 3:
             factored = 0.0
         for c in range(3, n3):
             y[0, c] = known[0, c] + h * h * b * x[c]
             y[1, c] = known[1, c] + h * g * x[c]
-        state.clock[WORK] += 0.5 * h * state.clock[POWER]
+        state.clock[run_state.WORK] += 0.5 * h * state.clock[run_state.POWER]
         if not close_step(dyn, scratch, reached, y):
-            return NO_CONVERGENCE
-        state.clock[POWER] = derivative(dyn, scratch, reached, y, state.dy, state.lam)
-        state.clock[WORK] += 0.5 * h * state.clock[POWER]
-        state.clock[TIME] = reached
-        state.clock[STEP] = h
-        state.count[EVALUATIONS] += 1
-        state.count[ACCEPTED] += 1
+            return run_state.NO_CONVERGENCE
+        state.clock[run_state.POWER] = derivative(dyn, scratch, reached, y, state.dy, state.lam)
+        state.clock[run_state.WORK] += 0.5 * h * state.clock[run_state.POWER]
+        state.clock[run_state.TIME] = reached
+        state.clock[run_state.STEP] = h
+        state.count[run_state.EVALUATIONS] += 1
+        state.count[run_state.ACCEPTED] += 1
         accepted += 1
-        if not math.isfinite(state.clock[POWER] + scratch.report[1]):
-            return NOT_FINITE
+        if not math.isfinite(state.clock[run_state.POWER] + scratch.report[1]):
+            return run_state.NOT_FINITE
 
 
 GENERALIZED_ALPHA = register(

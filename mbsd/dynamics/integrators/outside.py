@@ -33,27 +33,11 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from mbsd.dynamics import state as run_state
 from mbsd.dynamics.formulation import derivative, project, record_output
 from mbsd.dynamics.integrators.kind import Integrator, Option, register
 from mbsd.dynamics.reference.arrays import Dynamics, Scratch
-from mbsd.dynamics.state import (
-    ACCEPTED,
-    EVALUATIONS,
-    NEXT,
-    NOT_FINITE,
-    PAUSED,
-    POWER,
-    REACHED,
-    STARTED,
-    STEP,
-    STEP_TOO_SMALL,
-    TIME,
-    WORK,
-    Output,
-    Settings,
-    State,
-    record_here,
-)
+from mbsd.dynamics.state import Output, Settings, State, record_here
 
 STAGES = 1
 BRIEF = 1e-12
@@ -142,15 +126,17 @@ def advance_with(
     make: Maker, dyn: Dynamics, scratch: Scratch, state: State, out: Output, settings: Settings, end: float, steps: int
 ) -> int:
     """Advance an Integrator by the library's solver that ``make`` makes."""
-    if state.count[STARTED] == 0:
-        state.clock[STEP] = 0.0
-        _settle(dyn, scratch, state, float(state.clock[TIME]))
-        state.count[STARTED] = 1
-    while state.count[NEXT] < len(out.t) and out.t[state.count[NEXT]] <= state.clock[TIME]:
+    if state.count[run_state.STARTED] == 0:
+        state.clock[run_state.STEP] = 0.0
+        _settle(dyn, scratch, state, float(state.clock[run_state.TIME]))
+        state.count[run_state.STARTED] = 1
+    while (
+        state.count[run_state.NEXT] < len(out.t) and out.t[state.count[run_state.NEXT]] <= state.clock[run_state.TIME]
+    ):
         record_here(scratch, state, out)
-    if state.clock[TIME] >= end:
-        return REACHED
-    if end - state.clock[TIME] <= BRIEF * settings.longest + 8 * np.spacing(abs(end)):
+    if state.clock[run_state.TIME] >= end:
+        return run_state.REACHED
+    if end - state.clock[run_state.TIME] <= BRIEF * settings.longest + 8 * np.spacing(abs(end)):
         return _in_a_line(dyn, scratch, state, out, end)
     try:
         rates, stepper = _going_on(make, dyn, scratch, state, settings, end)
@@ -158,17 +144,20 @@ def advance_with(
         status = _march(scratch, stepper, rates, state, out, end, steps)
     except RatesNotFiniteError:
         _under.key, _under.stepper, _under.rates = (), None, None
-        return NOT_FINITE
-    state.count[EVALUATIONS] += rates.count - evaluated
-    if status in (REACHED, PAUSED):
+        return run_state.NOT_FINITE
+    state.count[run_state.EVALUATIONS] += rates.count - evaluated
+    if status in (run_state.REACHED, run_state.PAUSED):
         state.y[:, 3:] = stepper.y[:-1].reshape(2, -1)
-        state.clock[WORK] = stepper.y[-1]
-        project(dyn, scratch, state.clock[TIME], state.y, 2)
-        _settle(dyn, scratch, state, float(state.clock[TIME]))
-        if state.count[NEXT] < len(out.t) and out.t[state.count[NEXT]] <= state.clock[TIME]:
+        state.clock[run_state.WORK] = stepper.y[-1]
+        project(dyn, scratch, state.clock[run_state.TIME], state.y, 2)
+        _settle(dyn, scratch, state, float(state.clock[run_state.TIME]))
+        if (
+            state.count[run_state.NEXT] < len(out.t)
+            and out.t[state.count[run_state.NEXT]] <= state.clock[run_state.TIME]
+        ):
             record_here(scratch, state, out)
     _under.key, _under.stepper, _under.rates = (), None, None
-    if status == PAUSED:
+    if status == run_state.PAUSED:
         _under.key, _under.y = _key(make, scratch, settings, state, end), state.y.copy()
         _under.stepper, _under.rates = stepper, rates
     return status
@@ -177,27 +166,38 @@ def advance_with(
 def _march(scratch: Scratch, stepper: Stepper, rates: Rates, state: State, out: Output, end: float, steps: int) -> int:
     """Step, with the outputs between; those at the last time are left to the caller."""
     for _ in range(steps):
-        before = float(state.clock[TIME])
+        before = float(state.clock[run_state.TIME])
         if not stepper.step():
-            state.clock[STEP] = 10 * np.spacing(abs(before) + 1e-300)
-            return STEP_TOO_SMALL
+            state.clock[run_state.STEP] = 10 * np.spacing(abs(before) + 1e-300)
+            return run_state.STEP_TOO_SMALL
         done = stepper.t >= end
-        state.clock[TIME] = end if done else stepper.t
-        state.clock[STEP] = state.clock[TIME] - before
-        state.count[ACCEPTED] += 1
-        while state.count[NEXT] < len(out.t) and out.t[state.count[NEXT]] < state.clock[TIME]:
-            y = stepper.between(float(out.t[state.count[NEXT]]))
+        state.clock[run_state.TIME] = end if done else stepper.t
+        state.clock[run_state.STEP] = state.clock[run_state.TIME] - before
+        state.count[run_state.ACCEPTED] += 1
+        while (
+            state.count[run_state.NEXT] < len(out.t)
+            and out.t[state.count[run_state.NEXT]] < state.clock[run_state.TIME]
+        ):
+            y = stepper.between(float(out.t[state.count[run_state.NEXT]]))
             scratch.state[:, 3:] = y[:-1].reshape(2, -1)
-            record_output(rates.dyn, scratch, out, state.count[NEXT], y[-1])
+            record_output(rates.dyn, scratch, out, state.count[run_state.NEXT], y[-1])
             rates.count += 1
-            state.count[NEXT] += 1
+            state.count[run_state.NEXT] += 1
         if done:
-            return REACHED
-    return PAUSED
+            return run_state.REACHED
+    return run_state.PAUSED
 
 
 def _key(make: Maker, scratch: Scratch, settings: Settings, state: State, end: float) -> tuple[Any, ...]:
-    return make, scratch, settings, float(state.clock[TIME]), float(state.clock[STEP]), float(state.clock[WORK]), end
+    return (
+        make,
+        scratch,
+        settings,
+        float(state.clock[run_state.TIME]),
+        float(state.clock[run_state.STEP]),
+        float(state.clock[run_state.WORK]),
+        end,
+    )
 
 
 def _going_on(
@@ -207,30 +207,30 @@ def _going_on(
     key = _key(make, scratch, settings, state, end)
     held = _under.key
     same = len(held) > 0 and all(a is b for a, b in zip(held[:3], key[:3], strict=True)) and held[3:] == key[3:]
-    if same and state.clock[STEP] > 0.0 and np.array_equal(_under.y, state.y):
+    if same and state.clock[run_state.STEP] > 0.0 and np.array_equal(_under.y, state.y):
         return _under.rates, _under.stepper
     rates = Rates(dyn, scratch)
-    y = np.append(state.y[:, 3:], state.clock[WORK])
-    return rates, make(rates, float(state.clock[TIME]), y, end, settings)
+    y = np.append(state.y[:, 3:], state.clock[run_state.WORK])
+    return rates, make(rates, float(state.clock[run_state.TIME]), y, end, settings)
 
 
 def _settle(dyn: Dynamics, scratch: Scratch, state: State, t: float) -> None:
     """Make the derivative at the state valid."""
-    state.clock[POWER] = derivative(dyn, scratch, t, state.y, state.dy, state.lam)
-    state.count[EVALUATIONS] += 1
+    state.clock[run_state.POWER] = derivative(dyn, scratch, t, state.y, state.dy, state.lam)
+    state.count[run_state.EVALUATIONS] += 1
 
 
 def _in_a_line(dyn: Dynamics, scratch: Scratch, state: State, out: Output, end: float) -> int:
-    span = end - state.clock[TIME]
+    span = end - state.clock[run_state.TIME]
     state.y[...] += span * state.dy
-    state.clock[WORK] += span * state.clock[POWER]
-    state.clock[TIME] = end
+    state.clock[run_state.WORK] += span * state.clock[run_state.POWER]
+    state.clock[run_state.TIME] = end
     project(dyn, scratch, end, state.y, 2)
     _settle(dyn, scratch, state, end)
-    state.count[ACCEPTED] += 1
-    while state.count[NEXT] < len(out.t) and out.t[state.count[NEXT]] <= end:
+    state.count[run_state.ACCEPTED] += 1
+    while state.count[run_state.NEXT] < len(out.t) and out.t[state.count[run_state.NEXT]] <= end:
         record_here(scratch, state, out)
-    return REACHED
+    return run_state.REACHED
 
 
 class _Scipy:

@@ -35,25 +35,12 @@ import math
 import numpy as np
 
 from mbsd.compiling.jit import apart, inlined, internal, kernel
+from mbsd.dynamics import state as run_state
 from mbsd.dynamics.formulation import begin_run, derivative, project, rates, record_output, speeds
 from mbsd.dynamics.integrators.full_matrix import differentiate, factor_full, solve_full, too_large
 from mbsd.dynamics.integrators.kind import Integrator, register
 from mbsd.dynamics.integrators.step_size import allowed, first_step
-from mbsd.dynamics.state import (
-    ACCEPTED,
-    EVALUATIONS,
-    NEXT,
-    NOT_FINITE,
-    PAUSED,
-    POWER,
-    REACHED,
-    REJECTED,
-    STEP,
-    STEP_TOO_SMALL,
-    TIME,
-    WORK,
-    record_here,
-)
+from mbsd.dynamics.state import record_here
 
 ROOT6 = 6.0**0.5
 C = np.array([(4.0 - ROOT6) / 10.0, (4.0 + ROOT6) / 10.0, 1.0])
@@ -220,9 +207,9 @@ def find_stages(dyn, scratch, state, settings, h, tolerance):
                 for c in range(3, n3):
                     trial[part, c] = y[part, c] + k[Z + i, part, c]
             scratch.power[i] = derivative(
-                dyn, scratch, state.clock[TIME] + C[i] * h, trial, k[F + i], scratch.ws.right[1]
+                dyn, scratch, state.clock[run_state.TIME] + C[i] * h, trial, k[F + i], scratch.ws.right[1]
             )
-        state.count[EVALUATIONS] += 3
+        state.count[run_state.EVALUATIONS] += 3
         for part in range(2):
             for c in range(3, n3):
                 first = 0.0
@@ -315,8 +302,8 @@ def _estimate(dyn, scratch, state, settings, h, again):
         for part in range(2):
             for c in range(3, n3):
                 scratch.state[part, c] = y[part, c] + err[part, c]
-        derivative(dyn, scratch, state.clock[TIME], scratch.state, k[0], scratch.ws.right[1])
-        state.count[EVALUATIONS] += 1
+        derivative(dyn, scratch, state.clock[run_state.TIME], scratch.state, k[0], scratch.ws.right[1])
+        state.count[run_state.EVALUATIONS] += 1
         for part in range(2):
             for c in range(3, n3):
                 err[part, c] = k[0, part, c] + k[OTHER, part, c]
@@ -329,9 +316,9 @@ def _estimate(dyn, scratch, state, settings, h, again):
 def _outputs(dyn, scratch, state, out, h, reached):
     """Write the outputs within the step, from the polynomial through its stages."""
     k = scratch.stages
-    while state.count[NEXT] < out.t.shape[0] and out.t[state.count[NEXT]] < reached:
-        at = state.count[NEXT]
-        x = (out.t[at] - state.clock[TIME]) / h
+    while state.count[run_state.NEXT] < out.t.shape[0] and out.t[state.count[run_state.NEXT]] < reached:
+        at = state.count[run_state.NEXT]
+        x = (out.t[at] - state.clock[run_state.TIME]) / h
         work = 0.0
         for i in range(3):
             shape = x * (D[i, 0] + x * (D[i, 1] + x * D[i, 2]))
@@ -343,9 +330,9 @@ def _outputs(dyn, scratch, state, out, h, reached):
                 for i in range(3):
                     value += x * (D[i, 0] + x * (D[i, 1] + x * D[i, 2])) * k[Z + i, part, c]
                 scratch.state[part, c] = value
-        record_output(dyn, scratch, out, at, state.clock[WORK] + work)
-        state.count[EVALUATIONS] += 1
-        state.count[NEXT] = at + 1
+        record_output(dyn, scratch, out, at, state.clock[run_state.WORK] + work)
+        state.count[run_state.EVALUATIONS] += 1
+        state.count[run_state.NEXT] = at + 1
 
 
 @internal
@@ -372,22 +359,22 @@ def _accept(dyn, scratch, state, out, h, reached):
     y = state.y
     _outputs(dyn, scratch, state, out, h, reached)
     for i in range(3):
-        state.clock[WORK] += h * WEIGHTS[2, i] * scratch.power[i]
+        state.clock[run_state.WORK] += h * WEIGHTS[2, i] * scratch.power[i]
     for part in range(2):
         for c in range(3, y.shape[1]):
             y[part, c] = scratch.stages[AFTER, part, c]
-    state.clock[POWER] = derivative(dyn, scratch, reached, y, state.dy, state.lam)
-    state.clock[TIME] = reached
-    state.count[EVALUATIONS] += 1
-    state.count[ACCEPTED] += 1
+    state.clock[run_state.POWER] = derivative(dyn, scratch, reached, y, state.dy, state.lam)
+    state.clock[run_state.TIME] = reached
+    state.count[run_state.EVALUATIONS] += 1
+    state.count[run_state.ACCEPTED] += 1
 
 
 @internal
 def _begin(dyn, scratch, state, settings):
     """Find the derivative at the state, and the first step if there was none."""
     begin_run(dyn, scratch, state)
-    if state.clock[STEP] == 0.0:
-        state.clock[STEP] = first_step(dyn, scratch, state, settings, 0.25)
+    if state.clock[run_state.STEP] == 0.0:
+        state.clock[run_state.STEP] = first_step(dyn, scratch, state, settings, 0.25)
 
 
 @internal
@@ -414,16 +401,16 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
     before = 0.0  # length and error of the last accepted step
     error_before = 0.0
     while True:
-        t = state.clock[TIME]
-        while state.count[NEXT] < out.t.shape[0] and out.t[state.count[NEXT]] <= t:
+        t = state.clock[run_state.TIME]
+        while state.count[run_state.NEXT] < out.t.shape[0] and out.t[state.count[run_state.NEXT]] <= t:
             record_here(scratch, state, out)
         if t >= end:
-            return REACHED
+            return run_state.REACHED
         if accepted == max_steps:
-            return PAUSED
-        h = min(state.clock[STEP], settings.longest)
+            return run_state.PAUSED
+        h = min(state.clock[run_state.STEP], settings.longest)
         if h < SMALLEST_STEP * settings.longest and t + h < end:
-            return STEP_TOO_SMALL
+            return run_state.STEP_TOO_SMALL
         last = t + h >= end
         if last:
             h = end - t
@@ -434,7 +421,7 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
         passes = -1
         while passes < 0:
             if not usable:
-                state.count[EVALUATIONS] += differentiate(dyn, scratch, t, y, state.dy[1], k[0], k[OTHER])
+                state.count[run_state.EVALUATIONS] += differentiate(dyn, scratch, t, y, state.dy[1], k[0], k[OTHER])
                 usable = True
                 current = True
                 factored = 0.0
@@ -460,9 +447,9 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
             factor = _factor_of(error, h, before, error_before, passes)
         if passes < 0 or not error < 1.0:
             if h < SMALLEST_STEP * settings.longest:
-                return NOT_FINITE
-            state.clock[STEP] = h * max(0.2, min(factor, 0.9))
-            state.count[REJECTED] += 1
+                return run_state.NOT_FINITE
+            state.clock[run_state.STEP] = h * max(0.2, min(factor, 0.9))
+            state.count[run_state.REJECTED] += 1
             refused = True
             continue
         reached = end if last else t + h
@@ -474,7 +461,7 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
         if (usable and 1.0 <= factor < 1.2) or (last and factor > 1.0):
             factor = 1.0
         if not last or factor < 1.0:
-            state.clock[STEP] = min(h * factor, settings.longest)
+            state.clock[run_state.STEP] = min(h * factor, settings.longest)
         before = h
         error_before = max(error, 1e-4)
         refused = False

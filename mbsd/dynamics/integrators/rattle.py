@@ -24,23 +24,12 @@ Source: Suzuki 1990, Phys. Lett. A 146; Hairer, Lubich, Wanner, Geometric Numeri
 from __future__ import annotations
 
 from mbsd.compiling.jit import apart, inlined, internal, kernel
+from mbsd.dynamics import state as run_state
 from mbsd.dynamics.formulation import begin_run, derivative
 from mbsd.dynamics.integrators.kind import Integrator, register, without_sliding
 from mbsd.dynamics.reference.projection import LIFT
 from mbsd.dynamics.reference.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
-from mbsd.dynamics.state import (
-    ACCEPTED,
-    EVALUATIONS,
-    NEXT,
-    NO_CONVERGENCE,
-    PAUSED,
-    POWER,
-    REACHED,
-    TIME,
-    WORK,
-    fixed_step,
-    record_here,
-)
+from mbsd.dynamics.state import fixed_step, record_here
 from mbsd.equations.assembly import evaluate_nu, position
 from mbsd.equations.laws import evaluate_laws
 from mbsd.equations.loads import apply_loads
@@ -232,28 +221,28 @@ def march(dyn, scratch, state, out, settings, end, max_steps, parts):
     """Advance by RATTLE (1 part) or by its composition of order 4 (5 parts)."""
     y = state.y
     begin_run(dyn, scratch, state)
-    power = _stand(dyn, scratch, state.clock[TIME], y)
+    power = _stand(dyn, scratch, state.clock[run_state.TIME], y)
     fresh = True
     accepted = 0
     while True:
-        t = state.clock[TIME]
-        due = state.count[NEXT] < out.t.shape[0] and out.t[state.count[NEXT]] <= t
+        t = state.clock[run_state.TIME]
+        due = state.count[run_state.NEXT] < out.t.shape[0] and out.t[state.count[run_state.NEXT]] <= t
         done = t >= end or accepted == max_steps
         if (due or done) and not fresh:
-            state.clock[POWER] = derivative(dyn, scratch, t, y, state.dy, state.lam)
-            state.count[EVALUATIONS] += 1
+            state.clock[run_state.POWER] = derivative(dyn, scratch, t, y, state.dy, state.lam)
+            state.count[run_state.EVALUATIONS] += 1
             fresh = True
         if due:
             margin = scratch.report[0]
-            while state.count[NEXT] < out.t.shape[0] and out.t[state.count[NEXT]] <= t:
+            while state.count[run_state.NEXT] < out.t.shape[0] and out.t[state.count[run_state.NEXT]] <= t:
                 record_here(scratch, state, out)
             if not done:
                 power = _stand(dyn, scratch, t, y)
                 scratch.report[0] = margin
         if t >= end:
-            return REACHED
+            return run_state.REACHED
         if done:
-            return PAUSED
+            return run_state.PAUSED
         h, reached = fixed_step(state, out, settings, end)
         at = t
         for part in range(parts):
@@ -261,13 +250,13 @@ def march(dyn, scratch, state, out, settings, end, max_steps, parts):
             if parts == 5:
                 ahead *= 1.0 - 4.0 * SUZUKI if part == 2 else SUZUKI
             if not rattle_step(dyn, scratch, at, ahead, y, power):
-                return NO_CONVERGENCE
+                return run_state.NO_CONVERGENCE
             at += ahead
             power = scratch.report[1]
-            state.clock[WORK] += scratch.report[2]
-        state.clock[TIME] = reached
-        state.count[EVALUATIONS] += parts
-        state.count[ACCEPTED] += 1
+            state.clock[run_state.WORK] += scratch.report[2]
+        state.clock[run_state.TIME] = reached
+        state.count[run_state.EVALUATIONS] += parts
+        state.count[run_state.ACCEPTED] += 1
         accepted += 1
         fresh = False
 

@@ -26,22 +26,10 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, kernel
+from mbsd.dynamics import state as run_state
 from mbsd.dynamics.formulation import begin_run, close_step, derivative
 from mbsd.dynamics.integrators.kind import Integrator, Option, register
-from mbsd.dynamics.state import (
-    ACCEPTED,
-    EVALUATIONS,
-    NEXT,
-    NO_CONVERGENCE,
-    NOT_FINITE,
-    PAUSED,
-    POWER,
-    REACHED,
-    TIME,
-    WORK,
-    fixed_step,
-    record_here,
-)
+from mbsd.dynamics.state import fixed_step, record_here
 
 STAGES = 4
 
@@ -56,19 +44,19 @@ def march(dyn, scratch, state, out, settings, end, max_steps, projected):
     begin_run(dyn, scratch, state)
     accepted = 0
     while True:
-        t = state.clock[TIME]
-        if state.count[NEXT] < out.t.shape[0] and out.t[state.count[NEXT]] <= t:
+        t = state.clock[run_state.TIME]
+        if state.count[run_state.NEXT] < out.t.shape[0] and out.t[state.count[run_state.NEXT]] <= t:
             record_here(scratch, state, out)
             continue
         if t >= end:
-            return REACHED
+            return run_state.REACHED
         if accepted == max_steps:
-            return PAUSED
+            return run_state.PAUSED
         h, reached = fixed_step(state, out, settings, end)
         for part in range(2):
             for c in range(3, n3):
                 k[0, part, c] = state.dy[part, c]
-        scratch.power[0] = state.clock[POWER]
+        scratch.power[0] = state.clock[run_state.POWER]
         for s in range(1, 4):
             ahead = h if s == 3 else 0.5 * h
             for part in range(2):
@@ -78,21 +66,21 @@ def march(dyn, scratch, state, out, settings, end, max_steps, projected):
         for part in range(2):
             for c in range(3, n3):
                 y[part, c] += h / 6.0 * (k[0, part, c] + 2.0 * (k[1, part, c] + k[2, part, c]) + k[3, part, c])
-        state.clock[WORK] += (
+        state.clock[run_state.WORK] += (
             h / 6.0 * (scratch.power[0] + 2.0 * (scratch.power[1] + scratch.power[2]) + scratch.power[3])
         )
         if projected and not close_step(dyn, scratch, reached, y):
-            return NO_CONVERGENCE
-        state.clock[POWER] = derivative(dyn, scratch, reached, y, state.dy, state.lam)
-        state.clock[TIME] = reached
-        state.count[EVALUATIONS] += 4
-        state.count[ACCEPTED] += 1
+            return run_state.NO_CONVERGENCE
+        state.clock[run_state.POWER] = derivative(dyn, scratch, reached, y, state.dy, state.lam)
+        state.clock[run_state.TIME] = reached
+        state.count[run_state.EVALUATIONS] += 4
+        state.count[run_state.ACCEPTED] += 1
         accepted += 1
         total = 0.0
         for c in range(3, n3):
             total += abs(state.dy[1, c])
         if not math.isfinite(total):
-            return NOT_FINITE
+            return run_state.NOT_FINITE
 
 
 @kernel

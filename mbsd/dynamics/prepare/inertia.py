@@ -22,7 +22,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -30,9 +29,6 @@ from mbsd.arrays.inertias import inertia_of
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import ModelError
 from mbsd.equations.assembly import residual_and_jacobian, tabulate
-
-if TYPE_CHECKING:
-    from mbsd.arrays.packing import Packed
 
 LIFT = 1e-7
 """Part of the lent inertia by which M is lifted."""

@@ -39,7 +39,6 @@ from mbsd.results.measured import measured, measured_rate
 from mbsd.results.views import Mobility
 
 if TYPE_CHECKING:
-    from mbsd.dynamics.prepare.prepared import PreparedDynamics
     from mbsd.model.force import Element, Force, States
 
 MOMENT = 1e-5
@@ -141,7 +140,7 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     _refuse_superfluous_drivers(packed, mobility)
     switched = [*all_contacts(m, packed, initial.q), *stuck_rows(packed)] if contacts else []
     if switched:
-        packed = with_contacts(m, packed, switched)
+        packed = with_contacts(m, packed, switched, initial.q)
     apart = passes_for(packed, start, initial.q, weights, per_size, still)
     weight = weight_of(packed)
     packed = with_states(packed)
@@ -176,15 +175,7 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
         per_size=per_size,
     )
     ready = PreparedDynamics(
-        packed,
-        dynamics,
-        initial,
-        start,
-        end,
-        mobility,
-        switches,
-        joint_sticks(packed, loads),
-        masses_apart=apart > 1,
+        packed, dynamics, initial, start, end, mobility, switches, joint_sticks(packed, loads), masses_apart=apart > 1
     )
     refuse_singular_start(ready, list(kept), always)
     if light[3:].any():

@@ -10,7 +10,7 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -29,9 +29,6 @@ from mbsd.equations.loads import Loads, remembers
 from mbsd.kinematics.limits.free_wheels import FreeWheels
 from mbsd.kinematics.pose.initial import Initial
 from mbsd.results.views import Mobility
-
-if TYPE_CHECKING:
-    from mbsd.arrays.packing import Packed
 
 SHORTEST = 1e-9
 """A step may be divided down to this part of itself."""

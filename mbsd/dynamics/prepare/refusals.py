@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 import numpy as np
 
@@ -34,9 +34,6 @@ from mbsd.kinematics.pose.ideal_joints import with_ideal_joints
 from mbsd.model.force import Press
 from mbsd.model.mechanism import Model
 from mbsd.results.views import Mobility
-
-if TYPE_CHECKING:
-    from mbsd.dynamics.prepare.large import MANY_COORDINATES
 
 LOOSE = 1e-9
 """Singular values of the scaled Jacobian below this part of the largest are zero."""

@@ -44,11 +44,7 @@ def _begin_again(dyn, scratch, t, state, a, lam):
     """Loads and friction as before the first pass; returns their power (W)."""
     force = scratch.force
     power = 0.0
-    for c in range(a.shape[0]):
-        force[c] = dyn.weight[c]
-        a[c] = 0.0
-    for r in range(lam.shape[0]):
-        lam[r] = 0.0
+    _begin(dyn, force, a, lam)
     if dyn.loads.total > 0:
         power = apply_loads(dyn.loads, dyn.laws, t, state[0], state[1], scratch.ws.cos_sin, force)
     return power + begin_friction(dyn.system, dyn.loads, state[1], scratch.ws, force)

@@ -11,7 +11,6 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 from mbsd.base.errors import SimulationError
 from mbsd.base.running import end_if_unwanted
@@ -19,9 +18,6 @@ from mbsd.dynamics import state as run_state
 from mbsd.dynamics.runs.diagnosis import Growth, diagnosis, growth_of, refusal, runaway
 from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.state import ACCEPTED, REJECTED, TIME, State
-
-if TYPE_CHECKING:
-    from mbsd.dynamics.runs.run import Run
 
 LOG = logging.getLogger("mbsd")
 CHECKED = 2000

@@ -4,51 +4,35 @@ from __future__ import annotations
 
 import math
 
-from mbsd.equations.interactions.law import (
-    DISTANCE,
-    FX,
-    FY,
-    OMEGA,
-    TORQUE,
-    TX,
-    TY,
-    VX,
-    VY,
-    after,
-    interaction,
-    normal_force,
-    note,
-    stand,
-    touches,
-)
+from mbsd.equations.interactions import law
 
 RADIUS, STIFFNESS, EXPONENT, DAMPING, FRICTION, SLIP_SPEED, LOSS, LEAST_APPROACH = range(8)
 SWITCHES = True
 
 
-@interaction
+@law.interaction
 def force(numbers, state, out):
     """Fill the force; own numbers by the names above."""
-    stand(numbers, state)
-    own = after(numbers)
-    out[FX] = 0.0
-    out[FY] = 0.0
-    out[TORQUE] = 0.0
-    depth = numbers[own + RADIUS] - state[DISTANCE]
-    tx = state[TX]
-    ty = state[TY]
-    rate = ty * state[VX] - tx * state[VY]
+    law.stand(numbers, state)
+    own = law.after(numbers)
+    out[law.FX] = 0.0
+    out[law.FY] = 0.0
+    out[law.TORQUE] = 0.0
+    depth = numbers[own + RADIUS] - state[law.DISTANCE]
+    tx = state[law.TX]
+    ty = state[law.TY]
+    rate = ty * state[law.VX] - tx * state[law.VY]
     exponent = numbers[own + EXPONENT]
-    note(out, depth, rate, exponent)
-    if touches(state, depth):
-        normal = normal_force(
+    law.note(out, depth, rate, exponent)
+    if law.touches(state, depth):
+        normal = law.normal_force(
             state, depth, rate, numbers[own + STIFFNESS], exponent, numbers[own + DAMPING], numbers[own + LOSS],
             numbers[own + LEAST_APPROACH],
         )  # fmt: skip
         along = 0.0
         if numbers[own + FRICTION] > 0.0:
-            slip = tx * state[VX] + ty * state[VY] + state[OMEGA] * state[DISTANCE]
+            slip = tx * state[law.VX] + ty * state[law.VY] + state[law.OMEGA] * state[law.DISTANCE]
             along = -numbers[own + FRICTION] * math.tanh(slip / numbers[own + SLIP_SPEED]) * normal
-        out[FX] = along * tx - normal * ty
-        out[FY] = along * ty + normal * tx
-        out[TORQUE] = along * state[DISTANCE]
+        out[law.FX] = along * tx - normal * ty
+        out[law.FY] = along * ty + normal * tx
+        out[law.TORQUE] = along * state[law.DISTANCE]

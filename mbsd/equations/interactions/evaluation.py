@@ -21,39 +21,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from mbsd.compiling.jit import COMPILED, at_address, inlined
-from mbsd.equations.interactions.law import (
-    APPROACH,
-    CRANK,
-    CRANK_RATE,
-    FX,
-    FY,
-    LAW,
-    LAW_RATE,
-    OMEGA,
-    OWN_STATE,
-    POWER,
-    RATE,
-    SIDE,
-    SPEED,
-    SWITCH,
-    TIME,
-    TORQUE,
-    VX,
-    VY,
-)
-from mbsd.equations.interactions.switching import (
-    APPROACHED,
-    BEYOND,
-    HELD,
-    KEPT,
-    LAW_HERE,
-    LAW_RATE_HERE,
-    NEAR,
-    ROUGH,
-    SPEED_HERE,
-    VALUE,
-    WIDTH,
-)
+from mbsd.equations.interactions import law, switching
 from mbsd.equations.laws import law_at
 from mbsd.equations.relative.equation import OWN, POINTER, A, X, Y, evaluate_from
 
@@ -76,7 +44,7 @@ def apply(interaction, n, given, state, out, switches, t, q, v, cos_sin, load):
     power = 0.0
     for k in range(n):
         row = COLUMNS * k
-        own = WIDTH * (k + 1)
+        own = switching.WIDTH * (k + 1)
         first = interaction[row]
         second = interaction[row + 1]
         at = interaction[row + 3]
@@ -102,43 +70,43 @@ def apply(interaction, n, given, state, out, switches, t, q, v, cos_sin, load):
         state[X] = x
         state[Y] = y
         state[A] = q[j + 2] - q[i + 2] + given[at + 6]
-        state[VX] = ux * vx + uy * vy + omega * y
-        state[VY] = ux * vy - uy * vx - omega * x
-        state[OMEGA] = v[j + 2] - omega
+        state[law.VX] = ux * vx + uy * vy + omega * y
+        state[law.VY] = ux * vy - uy * vx - omega * x
+        state[law.OMEGA] = v[j + 2] - omega
         crank = 3 * interaction[row + 6] + 2
-        state[CRANK] = q[crank] - q[i + 2]
-        state[CRANK_RATE] = v[crank] - omega
-        state[TIME] = t
-        state[LAW] = switches[own + LAW_HERE]
-        state[LAW_RATE] = switches[own + LAW_RATE_HERE]
-        side = switches[own + KEPT] * switches[HELD]
-        state[SIDE] = side
-        state[APPROACH] = switches[own + APPROACHED]
+        state[law.CRANK] = q[crank] - q[i + 2]
+        state[law.CRANK_RATE] = v[crank] - omega
+        state[law.TIME] = t
+        state[law.LAW] = switches[own + switching.LAW_HERE]
+        state[law.LAW_RATE] = switches[own + switching.LAW_RATE_HERE]
+        side = switches[own + switching.KEPT] * switches[switching.HELD]
+        state[law.SIDE] = side
+        state[law.APPROACH] = switches[own + switching.APPROACHED]
         holding = 3 * interaction[row + 7]
         for s in range(interaction[row + 8]):
-            state[OWN_STATE + s] = v[holding + 3 * s]
-        out[SPEED] = 0.0
-        out[SWITCH] = math.nan
-        out[POWER] = 0.0
+            state[law.OWN_STATE + s] = v[holding + 3 * s]
+        out[law.SPEED] = 0.0
+        out[law.SWITCH] = math.nan
+        out[law.POWER] = 0.0
         # functions count their own numbers from OWN
         evaluate_from(interaction[row + 4], given, at + GEOMETRY - OWN, state, out)
-        value = out[SWITCH]
-        switches[own + VALUE] = value
-        switches[own + ROUGH] = out[POWER]
-        switches[own + SPEED_HERE] = out[SPEED]
-        if -side * value > switches[NEAR]:
-            switches[BEYOND] = min(switches[BEYOND], t)
-        power += out[FX] * state[VX] + out[FY] * state[VY] + out[TORQUE] * state[OMEGA]
-        fx = out[FX] * ux - out[FY] * uy
-        fy = out[FX] * uy + out[FY] * ux
+        value = out[law.SWITCH]
+        switches[own + switching.VALUE] = value
+        switches[own + switching.ROUGH] = out[law.POWER]
+        switches[own + switching.SPEED_HERE] = out[law.SPEED]
+        if -side * value > switches[switching.NEAR]:
+            switches[switching.BEYOND] = min(switches[switching.BEYOND], t)
+        power += out[law.FX] * state[law.VX] + out[law.FY] * state[law.VY] + out[law.TORQUE] * state[law.OMEGA]
+        fx = out[law.FX] * ux - out[law.FY] * uy
+        fy = out[law.FX] * uy + out[law.FY] * ux
         load[j] += fx
         load[j + 1] += fy
-        load[j + 2] += out[TORQUE] + arm_jx * fy - arm_jy * fx
+        load[j + 2] += out[law.TORQUE] + arm_jx * fy - arm_jy * fx
         load[i] -= fx
         load[i + 1] -= fy
-        load[i + 2] -= out[TORQUE] + (arm_ix + dx) * fy - (arm_iy + dy) * fx
+        load[i + 2] -= out[law.TORQUE] + (arm_ix + dx) * fy - (arm_iy + dy) * fx
         for s in range(interaction[row + 8]):
-            load[holding + 3 * s] += out[RATE + s]
+            load[holding + 3 * s] += out[law.RATE + s]
     return power
 
 
@@ -175,16 +143,16 @@ else:
 
 
 @inlined
-def apply_interactions(interaction, given, state, exchange, switch, laws, law, t, q, v, cos_sin, load):
+def apply_interactions(interaction, given, state, exchange, switch, laws, law_value, t, q, v, cos_sin, load):
     """Add the generalised forces of all interactions to load (3 nb,); cos_sin (nb, 2) turns the bodies.
 
-    The first five and ``law`` are those of Loads. Returns their power (W).
+    The first five and ``law_value`` are those of Loads. Returns their power (W).
     """
     count = interaction.shape[0]
     for k in range(count):
         if interaction[k, 2] > 0:
-            law_at(laws, interaction[k, 2], t, law)
-            switch[k + 1, LAW_HERE] = law[0]
-            switch[k + 1, LAW_RATE_HERE] = law[1]
+            law_at(laws, interaction[k, 2], t, law_value)
+            switch[k + 1, switching.LAW_HERE] = law_value[0]
+            switch[k + 1, switching.LAW_RATE_HERE] = law_value[1]
     arrays = (interaction, given, state, exchange[1], switch, q, v, cos_sin, load)
     return _call(interaction[0, 5], count, t, arrays)

@@ -4,61 +4,46 @@ from __future__ import annotations
 
 import math
 
-from mbsd.equations.interactions.law import (
-    FX,
-    FY,
-    OMEGA,
-    OWN,
-    TORQUE,
-    VX,
-    VY,
-    A,
-    X,
-    Y,
-    interaction,
-    normal_force,
-    note,
-    touches,
-)
+from mbsd.equations.interactions import law
 
 MIDDLE, FLANK, BASE_I, BASE_J, HALF, INVOLUTE, PERIOD, STIFFNESS, EXPONENT, DAMPING, LOSS, LEAST_APPROACH = range(12)
 SWITCHES = True
 
 
-@interaction
+@law.interaction
 def force(numbers, state, out):
     """Fill the force; own numbers by the names above. In a ring the base radius of gear j is negative."""
-    out[FX] = 0.0
-    out[FY] = 0.0
-    out[TORQUE] = 0.0
-    flank = numbers[OWN + FLANK]
-    base = numbers[OWN + BASE_J]
-    both = numbers[OWN + BASE_I] + base
+    out[law.FX] = 0.0
+    out[law.FY] = 0.0
+    out[law.TORQUE] = 0.0
+    flank = numbers[law.OWN + FLANK]
+    base = numbers[law.OWN + BASE_J]
+    both = numbers[law.OWN + BASE_I] + base
     way = 1.0 if base > 0.0 else -1.0
-    distance = math.sqrt(state[X] * state[X] + state[Y] * state[Y])
+    distance = math.sqrt(state[law.X] * state[law.X] + state[law.Y] * state[law.Y])
     if distance == 0.0:
         return
-    ux = state[X] / distance
-    uy = state[Y] / distance
-    rolled = base * state[A] - both * math.atan2(state[Y], state[X]) - numbers[OWN + MIDDLE]
-    period = numbers[OWN + PERIOD]
+    ux = state[law.X] / distance
+    uy = state[law.Y] / distance
+    rolled = base * state[law.A] - both * math.atan2(state[law.Y], state[law.X]) - numbers[law.OWN + MIDDLE]
+    period = numbers[law.OWN + PERIOD]
     rolled -= period * math.floor(rolled / period + 0.5)
     cosine = min(both / distance, 1.0)
     sine = math.sqrt(1.0 - cosine * cosine)
-    opened = both * (sine / cosine - math.acos(cosine) - numbers[OWN + INVOLUTE])
-    depth = flank * rolled - way * opened - numbers[OWN + HALF]
-    turning = (ux * state[VY] - uy * state[VX]) / distance
-    parting = ux * state[VX] + uy * state[VY]
-    rate = flank * (base * state[OMEGA] - both * turning) - way * sine * parting
-    exponent = numbers[OWN + EXPONENT]
-    note(out, depth, rate, exponent)
-    if touches(state, depth):
-        normal = normal_force(
-            state, depth, rate, numbers[OWN + STIFFNESS], exponent, numbers[OWN + DAMPING], numbers[OWN + LOSS],
-            numbers[OWN + LEAST_APPROACH],
+    opened = both * (sine / cosine - math.acos(cosine) - numbers[law.OWN + INVOLUTE])
+    depth = flank * rolled - way * opened - numbers[law.OWN + HALF]
+    turning = (ux * state[law.VY] - uy * state[law.VX]) / distance
+    parting = ux * state[law.VX] + uy * state[law.VY]
+    rate = flank * (base * state[law.OMEGA] - both * turning) - way * sine * parting
+    exponent = numbers[law.OWN + EXPONENT]
+    law.note(out, depth, rate, exponent)
+    if law.touches(state, depth):
+        normal = law.normal_force(
+            state, depth, rate, numbers[law.OWN + STIFFNESS], exponent, numbers[law.OWN + DAMPING],
+            numbers[law.OWN + LOSS], numbers[law.OWN + LEAST_APPROACH],
         )  # fmt: skip
         across = normal * flank * both / distance
         apart = normal * way * sine
-        out[FX] = apart * ux - across * uy
-        out[FY] = apart * uy + across * ux
-        out[TORQUE] = -normal * flank * base
+        out[law.FX] = apart * ux - across * uy
+        out[law.FY] = apart * uy + across * ux
+        out[law.TORQUE] = -normal * flank * base

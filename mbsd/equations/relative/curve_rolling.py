@@ -16,45 +16,8 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import internal
-from mbsd.equations.relative.curve_pieces import (
-    ARC,
-    CLOSED,
-    COUNT,
-    CX,
-    CY,
-    DDDX,
-    DDDY,
-    DDX,
-    DDY,
-    DX,
-    DY,
-    LENGTH,
-    PIECE,
-    RADIUS,
-    SPAN,
-    TABLE,
-    TANGENT,
-    TURNING,
-    WIDTH,
-    U,
-    find_foot,
-    place_on,
-)
-from mbsd.equations.relative.equation import (
-    FA,
-    FX,
-    FXX,
-    FXY,
-    FY,
-    FYY,
-    PHASE,
-    A,
-    F,
-    X,
-    Y,
-    clear,
-    equation,
-)
+from mbsd.equations.relative import curve_pieces as pieces
+from mbsd.equations.relative import equation
 from mbsd.equations.system import ZERO
 
 NODES = (-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640)
@@ -65,55 +28,63 @@ WEIGHTS = (0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286
 @internal
 def arc_length(numbers, piece, u, scratch):
     """Return arc length at u (m), counted from the begin of the curve; overwrites the scratch."""
-    begin = numbers[TABLE + WIDTH * piece]
+    begin = numbers[pieces.TABLE + pieces.WIDTH * piece]
     inside = u
-    if numbers[CLOSED] == 0.0:
-        inside = min(max(u, numbers[TABLE]), numbers[TABLE] + numbers[SPAN])
+    if numbers[pieces.CLOSED] == 0.0:
+        inside = min(max(u, numbers[pieces.TABLE]), numbers[pieces.TABLE] + numbers[pieces.SPAN])
     half = 0.5 * (inside - begin)
-    place_on(numbers, piece, inside, scratch)
-    straight = (u - inside) * math.sqrt(scratch[DX] * scratch[DX] + scratch[DY] * scratch[DY])
+    pieces.place_on(numbers, piece, inside, scratch)
+    straight = (u - inside) * math.sqrt(
+        scratch[pieces.DX] * scratch[pieces.DX] + scratch[pieces.DY] * scratch[pieces.DY]
+    )
     total = 0.0
     for k in range(5):
-        place_on(numbers, piece, begin + half * (1.0 + NODES[k]), scratch)
-        total += WEIGHTS[k] * math.sqrt(scratch[DX] * scratch[DX] + scratch[DY] * scratch[DY])
-    return numbers[TABLE + WIDTH * piece + ARC] + half * total + straight
+        pieces.place_on(numbers, piece, begin + half * (1.0 + NODES[k]), scratch)
+        total += WEIGHTS[k] * math.sqrt(
+            scratch[pieces.DX] * scratch[pieces.DX] + scratch[pieces.DY] * scratch[pieces.DY]
+        )
+    return numbers[pieces.TABLE + pieces.WIDTH * piece + pieces.ARC] + half * total + straight
 
 
-@equation
+@equation.equation
 def residual(numbers, relative, out):
     """Fill F (m); own numbers as in curve_pieces.py."""
-    find_foot(numbers, relative)
-    piece = int(relative[PIECE])
-    u = relative[U]
+    pieces.find_foot(numbers, relative)
+    piece = int(relative[pieces.PIECE])
+    u = relative[pieces.U]
     s = arc_length(numbers, piece, u, relative)
-    place_on(numbers, piece, u, relative)
-    speed = math.sqrt(relative[DX] * relative[DX] + relative[DY] * relative[DY])
-    tx = relative[DX] / speed
-    ty = relative[DY] / speed
-    bent = tx * relative[DDY] - ty * relative[DDX]
+    pieces.place_on(numbers, piece, u, relative)
+    speed = math.sqrt(relative[pieces.DX] * relative[pieces.DX] + relative[pieces.DY] * relative[pieces.DY])
+    tx = relative[pieces.DX] / speed
+    ty = relative[pieces.DY] / speed
+    bent = tx * relative[pieces.DDY] - ty * relative[pieces.DDX]
     kappa = bent / (speed * speed)
-    stretch = (tx * relative[DDX] + ty * relative[DDY]) / speed  # d speed / ds
-    kappa_rate = ((tx * relative[DDDY] - ty * relative[DDDX]) / speed - 3.0 * bent * stretch / speed) / (speed * speed)
-    d = tx * (relative[Y] - relative[CY]) - ty * (relative[X] - relative[CX])
+    stretch = (tx * relative[pieces.DDX] + ty * relative[pieces.DDY]) / speed  # d speed / ds
+    kappa_rate = ((tx * relative[pieces.DDDY] - ty * relative[pieces.DDDX]) / speed - 3.0 * bent * stretch / speed) / (
+        speed * speed
+    )
+    d = tx * (relative[equation.Y] - relative[pieces.CY]) - ty * (relative[equation.X] - relative[pieces.CX])
     beta = math.atan2(ty, tx)
-    near = numbers[TABLE + WIDTH * piece + TANGENT]
+    near = numbers[pieces.TABLE + pieces.WIDTH * piece + pieces.TANGENT]
     beta += 2.0 * math.pi * math.floor((near - beta) / (2.0 * math.pi) + 0.5)
-    r = numbers[RADIUS]
-    value = s - r * (beta - relative[A]) - numbers[PHASE] - relative[ZERO]
-    if numbers[CLOSED] != 0.0:
-        last = TABLE + WIDTH * int(numbers[COUNT])  # a round: arc length and turning of the tangent
-        period = abs(numbers[last + LENGTH] - r * numbers[last + TURNING])
+    r = numbers[pieces.RADIUS]
+    value = s - r * (beta - relative[equation.A]) - numbers[equation.PHASE] - relative[ZERO]
+    if numbers[pieces.CLOSED] != 0.0:
+        last = pieces.TABLE + pieces.WIDTH * int(
+            numbers[pieces.COUNT]
+        )  # a round: arc length and turning of the tangent
+        period = abs(numbers[last + pieces.LENGTH] - r * numbers[last + pieces.TURNING])
         if period > 0.0:
             value -= period * math.floor(value / period + 0.5)
     w = 1.0 - kappa * d
     first = 1.0 - r * kappa
     outer = first * kappa_rate * d / (w * w * w) - r * kappa_rate / (w * w)
     mixed = first * kappa / (w * w)
-    clear(out)
-    out[F] = value
-    out[FX] = first * tx / w
-    out[FY] = first * ty / w
-    out[FA] = r
-    out[FXX] = outer * tx * tx - 2.0 * mixed * tx * ty
-    out[FXY] = outer * tx * ty + mixed * (tx * tx - ty * ty)
-    out[FYY] = outer * ty * ty + 2.0 * mixed * tx * ty
+    equation.clear(out)
+    out[equation.F] = value
+    out[equation.FX] = first * tx / w
+    out[equation.FY] = first * ty / w
+    out[equation.FA] = r
+    out[equation.FXX] = outer * tx * tx - 2.0 * mixed * tx * ty
+    out[equation.FXY] = outer * tx * ty + mixed * (tx * tx - ty * ty)
+    out[equation.FYY] = outer * ty * ty + 2.0 * mixed * tx * ty

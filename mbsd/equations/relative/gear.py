@@ -14,50 +14,32 @@ from __future__ import annotations
 
 import math
 
-from mbsd.equations.relative.equation import (
-    DIRECTION,
-    FA,
-    FX,
-    FXX,
-    FXY,
-    FY,
-    FYY,
-    OWN,
-    PHASE,
-    TURN,
-    WRAPS,
-    A,
-    F,
-    X,
-    Y,
-    clear,
-    equation,
-)
+from mbsd.equations.relative import equation
 from mbsd.equations.system import ZERO
 
 TWO_PI = 2.0 * math.pi
 
 
-@equation
+@equation.equation
 def residual(numbers, relative, out):
     """Fill F (m); own numbers r_i, s r_j."""
-    x = relative[X]
-    y = relative[Y]
+    x = relative[equation.X]
+    y = relative[equation.Y]
     square = x * x + y * y
     psi = math.atan2(y, x)
-    both = numbers[OWN] + numbers[OWN + 1]
-    if numbers[WRAPS] == 0.0:
-        psi += TWO_PI * math.floor((relative[TURN] + numbers[DIRECTION] - psi) / TWO_PI + 0.5)
-    value = numbers[OWN + 1] * relative[A] - both * psi - numbers[PHASE] - relative[ZERO]
+    both = numbers[equation.OWN] + numbers[equation.OWN + 1]
+    if numbers[equation.WRAPS] == 0.0:
+        psi += TWO_PI * math.floor((relative[equation.TURN] + numbers[equation.DIRECTION] - psi) / TWO_PI + 0.5)
+    value = numbers[equation.OWN + 1] * relative[equation.A] - both * psi - numbers[equation.PHASE] - relative[ZERO]
     period = TWO_PI * abs(both)
-    if numbers[WRAPS] != 0.0 and period > 0.0:
+    if numbers[equation.WRAPS] != 0.0 and period > 0.0:
         value -= period * math.floor(value / period + 0.5)
     fourth = square * square
-    clear(out)
-    out[F] = value
-    out[FX] = both * y / square
-    out[FY] = -both * x / square
-    out[FA] = numbers[OWN + 1]
-    out[FXX] = -both * 2.0 * x * y / fourth
-    out[FXY] = both * (x * x - y * y) / fourth
-    out[FYY] = both * 2.0 * x * y / fourth
+    equation.clear(out)
+    out[equation.F] = value
+    out[equation.FX] = both * y / square
+    out[equation.FY] = -both * x / square
+    out[equation.FA] = numbers[equation.OWN + 1]
+    out[equation.FXX] = -both * 2.0 * x * y / fourth
+    out[equation.FXY] = both * (x * x - y * y) / fourth
+    out[equation.FYY] = both * 2.0 * x * y / fourth

@@ -10,36 +10,23 @@ from __future__ import annotations
 
 import math
 
-from mbsd.equations.relative.equation import (
-    FX,
-    FXX,
-    FXY,
-    FY,
-    FYY,
-    OWN,
-    PHASE,
-    F,
-    X,
-    Y,
-    clear,
-    equation,
-)
+from mbsd.equations.relative import equation
 from mbsd.equations.system import ZERO
 
 
-@equation
+@equation.equation
 def residual(numbers, relative, out):
     """Fill F (m); own numbers s, c."""
-    x = relative[X]
-    y = relative[Y]
-    s = numbers[OWN]
+    x = relative[equation.X]
+    y = relative[equation.Y]
+    s = numbers[equation.OWN]
     length = math.sqrt(x * x + y * y)
     cube = length * length * length
-    clear(out)
-    out[F] = s * (length - numbers[OWN + 1]) - numbers[PHASE] - relative[ZERO]
+    equation.clear(out)
+    out[equation.F] = s * (length - numbers[equation.OWN + 1]) - numbers[equation.PHASE] - relative[ZERO]
     if length > 0.0:
-        out[FX] = s * x / length
-        out[FY] = s * y / length
-        out[FXX] = s * y * y / cube
-        out[FXY] = -s * x * y / cube
-        out[FYY] = s * x * x / cube
+        out[equation.FX] = s * x / length
+        out[equation.FY] = s * y / length
+        out[equation.FXX] = s * y * y / cube
+        out[equation.FXY] = -s * x * y / cube
+        out[equation.FYY] = s * x * x / cube

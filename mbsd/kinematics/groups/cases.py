@@ -24,25 +24,7 @@ from typing import Any, NamedTuple
 
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import inlined, internal, lazy, merged
-from mbsd.kinematics.groups.carried import (
-    AVOID,
-    BASE,
-    BEND,
-    CHANGE,
-    COS,
-    DOUBTED,
-    MEETING,
-    NEAR,
-    OPEN,
-    SIGN,
-    SIN,
-    SINE,
-    SOLVED,
-    SPEED,
-    THETA,
-    TURNS,
-    VALUE,
-)
+from mbsd.kinematics.groups import carried
 
 FLAT = 1e-12
 """Squared sine at which branches meet: lengths that agree to this part count as equal."""
@@ -126,7 +108,7 @@ def _unit_speed(case, j):
 
 @inlined
 def _speed(case, j):
-    return case.coordinate[j, SPEED]
+    return case.coordinate[j, carried.SPEED]
 
 
 speed_of = alternatives({PoseAlone: _unit_speed, AlongLaws: _unit_speed, PerCoordinate: _speed})
@@ -135,21 +117,21 @@ speed_of = alternatives({PoseAlone: _unit_speed, AlongLaws: _unit_speed, PerCoor
 
 @inlined
 def _reached_alone(case, n):
-    if n[SINE] > FLAT_ALONE:
-        return SOLVED
-    return OPEN if n[SINE] < -FLAT_ALONE else DOUBTED
+    if n[carried.SINE] > FLAT_ALONE:
+        return carried.SOLVED
+    return carried.OPEN if n[carried.SINE] < -FLAT_ALONE else carried.DOUBTED
 
 
 @inlined
 def _reached_along(case, n):
-    if n[SINE] > FLAT:
-        return SOLVED
-    return OPEN if n[SINE] < -FLAT else MEETING
+    if n[carried.SINE] > FLAT:
+        return carried.SOLVED
+    return carried.OPEN if n[carried.SINE] < -FLAT else carried.MEETING
 
 
 @inlined
 def _reached(case, n):
-    return SOLVED if n[SINE] > n[AVOID] else DOUBTED
+    return carried.SOLVED if n[carried.SINE] > n[carried.AVOID] else carried.DOUBTED
 
 
 reached = alternatives({PoseAlone: _reached_alone, AlongLaws: _reached_along, PerCoordinate: _reached})
@@ -172,20 +154,20 @@ too_short = alternatives({PoseAlone: _never_short, AlongLaws: _short, PerCoordin
 
 @inlined
 def _kept(case, n, b, lx, ly, tx, ty, apart):
-    return n[SIGN]
+    return n[carried.SIGN]
 
 
 @internal
 def _predicted_side(case, n, b, lx, ly, tx, ty, apart):
-    if n[NEAR] > 0.0:
+    if n[carried.NEAR] > 0.0:
         theta = predicted(case.base, case.coordinate, b)
         c = math.cos(theta)
         s = math.sin(theta)
         side = (c * lx - s * ly) * tx + (s * lx + c * ly) * ty
         if doubted(side, apart):
             return 0.0
-        n[SIGN] = 1.0 if side > 0.0 else -1.0
-    return n[SIGN]
+        n[carried.SIGN] = 1.0 if side > 0.0 else -1.0
+    return n[carried.SIGN]
 
 
 branch_of = alternatives({PoseAlone: _kept, AlongLaws: _kept, PerCoordinate: _predicted_side})
@@ -202,7 +184,7 @@ def _not_noted(case, n, change):
 
 @inlined
 def _noted(case, n, change):
-    n[CHANGE] = change
+    n[carried.CHANGE] = change
 
 
 note_change = alternatives({PoseAlone: _not_noted, AlongLaws: _noted, PerCoordinate: _not_noted})
@@ -221,7 +203,7 @@ def _value_along(case, e, law, column):
 
 @inlined
 def _value(case, e, law, column):
-    return case.coordinate[column, VALUE] if column >= 0 else case.drive[law, 0]
+    return case.coordinate[column, carried.VALUE] if column >= 0 else case.drive[law, 0]
 
 
 value_of = alternatives({PoseAlone: _value_alone, AlongLaws: _value_along, PerCoordinate: _value})
@@ -254,10 +236,10 @@ MISSED = 0.5
 def predicted(base, coordinate, b):
     """Return angle of body b (rad)."""
     columns = coordinate.shape[0] - 1
-    since = coordinate[columns, VALUE]
-    theta = base[b, THETA] + 0.5 * base[b, BEND] * since * since
+    since = coordinate[columns, carried.VALUE]
+    theta = base[b, carried.THETA] + 0.5 * base[b, carried.BEND] * since * since
     for j in range(columns):
-        theta += base[b, TURNS + j] * (coordinate[j, VALUE] - coordinate[j, BASE])
+        theta += base[b, carried.TURNS + j] * (coordinate[j, carried.VALUE] - coordinate[j, carried.BASE])
     return theta
 
 
@@ -271,7 +253,7 @@ def doubted(side, reach):
 def angle_of(body, base, coordinate, b):
     """Return angle of body b (rad), all its turns counted."""
     guess = predicted(base, coordinate, b)
-    angle = math.atan2(body[b, SIN], body[b, COS])
+    angle = math.atan2(body[b, carried.SIN], body[b, carried.COS])
     turns = (guess - angle) / (2.0 * math.pi) + 0.5
     whole = int(turns)
     if whole > turns:

@@ -18,29 +18,8 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.base.running import Kept
 from mbsd.equations.relative.equation import ARM, AT, ROW
-from mbsd.kinematics.groups.blocks import (
-    ACROSS,
-    ALONG,
-    APART,
-    BLOCK,
-    BODIES,
-    BODY,
-    CARRIES,
-    EQUATIONS,
-    FREE,
-    HANGS,
-    LARGEST,
-    PIN,
-    SLIDE,
-    SPECIAL,
-    TRAIN,
-    TREE_AT,
-    TURNED,
-    UNKNOWNS,
-    WELD,
-    Blocks,
-    with_scratch,
-)
+from mbsd.kinematics.groups import blocks
+from mbsd.kinematics.groups.blocks import Blocks, with_scratch
 from mbsd.kinematics.groups.groups import Groups, Link
 from mbsd.kinematics.groups.kinds.train import CARRIES_ON
 from mbsd.kinematics.groups.kinds.welded import welded
@@ -110,23 +89,23 @@ class _Parts:
 
     def _add_train(self, tree: list[tuple[int, int, Link | None]], equations: list[int]) -> bool:
         """Add the bodies as a gear train, if they are one."""
-        if any(hangs not in (PIN, WELD) for _, hangs, _ in tree):
+        if any(hangs not in (blocks.PIN, blocks.WELD) for _, hangs, _ in tree):
             return False
-        pinned = [body for body, hangs, _ in tree if hangs == PIN]
+        pinned = [body for body, hangs, _ in tree if hangs == blocks.PIN]
         follows: dict[int, int] = {}
         for body, hangs, link in tree:
-            if hangs == WELD and link is not None:
+            if hangs == blocks.WELD and link is not None:
                 follows[body] = follows.get(link.other, link.other)
         if not self.trains.solve(equations, pinned, follows):
             return False
         for body, hangs, link in tree:
             assert link is not None
-            if hangs == WELD:
+            if hangs == blocks.WELD:
                 self.plan.add_group(welded(self.plan.places, body, {"W": link}), (body,))
                 continue
             sums = self.trains.sums[body]
             numbers = [*self.plan.places.pin(link), sums.constant, 0.0]
-            self.plan.add_group((TRAIN, (body, -1, link.other, 0), len(self.train), numbers), (body,))
+            self.plan.add_group((blocks.TRAIN, (body, -1, link.other, 0), len(self.train), numbers), (body,))
             self.train.append([len(self.shares), len(sums.shares)])
             self.shares += sums.shares.items()
         return True
@@ -146,38 +125,40 @@ class _Parts:
         self.numbers += block.arms
         self.near += block.near
         self._taken_rows = self._taken_rows | set(rows)
-        bodies = [line[BODY] for line in block.tree]
-        self.plan.add_group((BLOCK, (bodies[0], -1, 0, 0), len(self.head) - 1, []), bodies)
+        bodies = [line[blocks.BODY] for line in block.tree]
+        self.plan.add_group((blocks.BLOCK, (bodies[0], -1, 0, 0), len(self.head) - 1, []), bodies)
 
     def cost(self) -> float:
         """Return cost of one time (us)."""
-        blocks = [
-            PINNED if head[BODIES] == 1 and self.tree[head[TREE_AT]][HANGS] == PIN else BESIDE + EACH * head[EQUATIONS]
+        costs = [
+            PINNED
+            if head[blocks.BODIES] == 1 and self.tree[head[blocks.TREE_AT]][blocks.HANGS] == blocks.PIN
+            else BESIDE + EACH * head[blocks.EQUATIONS]
             for head in self.head
         ]
-        return CLOSED * (len(self.plan.taken) - len(blocks)) + sum(blocks)
+        return CLOSED * (len(self.plan.taken) - len(costs)) + sum(costs)
 
     def tables(self) -> Parts:
         """Return groups and blocks as the kernels read them."""
-        carriers = {int(body) for kind, bodies, _, _ in self.plan.taken if kind < BLOCK for body in bodies[2:]}
+        carriers = {int(body) for kind, bodies, _, _ in self.plan.taken if kind < blocks.BLOCK for body in bodies[2:]}
         for head in self.head:
-            own = {row[0] for row in self.tree[head[TREE_AT] : head[TREE_AT] + head[BODIES]]}
-            head[CARRIES] = int(bool(own & carriers))
+            own = {row[0] for row in self.tree[head[blocks.TREE_AT] : head[blocks.TREE_AT] + head[blocks.BODIES]]}
+            head[blocks.CARRIES] = int(bool(own & carriers))
         for kind, bodies, _, numbers in self.plan.taken:
-            if kind == TRAIN:
+            if kind == blocks.TRAIN:
                 numbers[CARRIES_ON] = float(bodies[0] in carriers)
-        blocks = with_scratch(
+        tables = with_scratch(
             self.head, self.tree, self.equations, self.near, self.frame, self.numbers,
             self.packed.system.numbers, self.train, [body for body, _ in self.shares],
             [share for _, share in self.shares],
         )  # fmt: skip
         left_out = set(range(len(self.packed.ws.phi))) - self.rows
-        return Parts(self.plan.groups(), blocks, all(self.trains.proves(row) for row in left_out))
+        return Parts(self.plan.groups(), tables, all(self.trains.proves(row) for row in left_out))
 
 
-HANGING = {"W": WELD, "R": PIN, "P": SLIDE}
+HANGING = {"W": blocks.WELD, "R": blocks.PIN, "P": blocks.SLIDE}
 """Links that a body may hang by, the best first."""
-ONE_ROW = {"slot": ACROSS, "along": ALONG, "distance": APART}
+ONE_ROW = {"slot": blocks.ACROSS, "along": blocks.ALONG, "distance": blocks.APART}
 
 
 class Hanging(NamedTuple):
@@ -245,11 +226,11 @@ def hanging(plan: Plan, members: set[int], left: Sequence[int]) -> Hanging | Non
     packed, inside = plan.packed, plan.known | members
     rows = [row for row in left if all(int(body) in inside for body in packed.system.row_body[row])]
     tree, joints = hanging_tree(plan, members)
-    unknowns = sum(UNKNOWNS[hangs] for _, hangs, _ in tree)
+    unknowns = sum(blocks.UNKNOWNS[hangs] for _, hangs, _ in tree)
     first = packed.first_row
     held = {row for joint in joints for row in range(first[joint], first[joint + 1])}
     equations = [row for row in rows if row not in held]
-    return Hanging(tree, rows, equations) if 0 < len(equations) == unknowns <= LARGEST else None
+    return Hanging(tree, rows, equations) if 0 < len(equations) == unknowns <= blocks.LARGEST else None
 
 
 def hanging_tree(plan: Plan, members: set[int]) -> tuple[list[tuple[int, int, Link | None]], set[int]]:
@@ -267,7 +248,7 @@ def hanging_tree(plan: Plan, members: set[int]) -> tuple[list[tuple[int, int, Li
                     break
             if hanging:
                 break
-        body, hangs, link = hanging or (waiting[0], FREE, None)
+        body, hangs, link = hanging or (waiting[0], blocks.FREE, None)
         tree.append((body, hangs, link))
         if link is not None:
             joints.add(link.joint)
@@ -298,7 +279,7 @@ def tables_of(plan: Plan, block: Hanging) -> Tables | None:
         parent = link.other if link else 0
         tree.append([body, members.get(parent, -1), parent, hangs, unknown])
         frame.append([0.0] * 7 if link is None else plan.places.hanging(link))
-        unknown += UNKNOWNS[hangs]
+        unknown += blocks.UNKNOWNS[hangs]
     return Tables(tree, frame, *written, sorted(beside - set(members) - {0}))
 
 
@@ -310,19 +291,19 @@ def equations_of(
     special_at = {int(entry[ROW]): k for k, entry in enumerate(system.special)}
     offset = {int(row[2]): float(system.angle_offset[k]) for k, row in enumerate(system.angle)}
     length = {int(row[2]): float(system.distance_length[k]) for k, row in enumerate(system.distance)}
-    kind = {int(row[2]): (TURNED, row) for row in system.angle}
+    kind = {int(row[2]): (blocks.TURNED, row) for row in system.angle}
     for name, number in ONE_ROW.items():
         kind |= {int(row[2]): (number, row) for row in getattr(system, name)}
     for row in system.point:
         if int(row[2]) in rows and int(row[2]) + 1 in rows:
-            kind |= {int(row[2]): (ALONG, row), int(row[2]) + 1: (ACROSS, row)}
+            kind |= {int(row[2]): (blocks.ALONG, row), int(row[2]) + 1: (blocks.ACROSS, row)}
     equations, numbers = [], []
     for row in rows:
         at = arm = address = 0
         if row in special_at:
             k = special_at[row]
             entry = system.special[k]
-            equation, (i, j, _, motion) = SPECIAL, entry[:4]
+            equation, (i, j, _, motion) = blocks.SPECIAL, entry[:4]
             at, arm, address = int(entry[AT]), int(entry[ARM]), int(system.address[k])
         elif row in kind:
             equation, (i, j, _, motion) = kind[row]

@@ -20,17 +20,7 @@ from mbsd.kinematics.groups.groups import COORDINATE, KIND, LAW, NUMBERS, THIRD,
 from mbsd.kinematics.groups.kinds import driven, prp, rod, rpr, rrp, rrr, slide, welded, yoke
 from mbsd.kinematics.groups.kinds.train import BODY_3
 
-KINDS = (
-    driven.KIND,
-    welded.KIND,
-    rrr.KIND,
-    rrp.KIND,
-    rpr.KIND,
-    yoke.KIND,
-    prp.KIND,
-    rod.KIND,
-    slide.KIND,
-)
+KINDS = (driven.KIND, welded.KIND, rrr.KIND, rrp.KIND, rpr.KIND, yoke.KIND, prp.KIND, rod.KIND, slide.KIND)
 NAMES = tuple(kind.name for kind in KINDS)
 BRANCH = {kind.code: kind.branch for kind in KINDS if kind.branch is not None}
 """Index of the sign of the assembly."""

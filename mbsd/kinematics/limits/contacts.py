@@ -14,14 +14,12 @@ import numpy as np
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import EquilibriumError, LimitError, ModelError
 from mbsd.kinematics.limits.joints import coordinate, limits_of
-from mbsd.kinematics.pose.phases import take_decided
+from mbsd.kinematics.pose.phases import take_decided, take_phases
 from mbsd.model.contacts import ANGLE_STOP, COORDINATE_STOP
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
 
 if TYPE_CHECKING:
-    from mbsd.arrays.packing import Packed
-    from mbsd.model.mechanism import Model
     from mbsd.results.solution import Solution
 
 
@@ -50,7 +48,7 @@ def gaps(m: Model, packed: Packed, q: np.ndarray, limits: bool) -> list[Gap]:
     contacts = all_contacts(m, packed, q[0]) if limits else list(m.contacts.values())
     if not contacts:
         return []
-    wide = with_contacts(m, packed, contacts)
+    wide = with_contacts(m, packed, contacts, q[0])
     count, rows = len(q), len(wide.ws.phi)
     phi, gamma, compact = np.zeros((count, rows)), np.zeros((count, rows)), np.zeros((count, rows, 6))
     drives = np.zeros((count, len(wide.motions) + 1, 3))
@@ -136,10 +134,12 @@ def all_contacts(m: Model, packed: Packed, q: np.ndarray) -> list[Joint]:
     return out
 
 
-def with_contacts(m: Model, packed: Packed, contacts: list[Joint]) -> Packed:
-    """Return the mechanism with rows for contacts after all others, and the phases of its start."""
+def with_contacts(m: Model, packed: Packed, contacts: list[Joint], start: np.ndarray) -> Packed:
+    """Return the mechanism with rows for contacts after all others, and the phases of its start (3 nb,)."""
     out = pack(m, contacts)
     out.motions = packed.motions
     take_decided(out, packed)
     out.specials.callbacks += packed.specials.callbacks  # some of these numbers are their addresses
+    spans = [k for k in out.specials.phased if k >= len(packed.specials.names) and out.specials.names[k] == "span"]
+    take_phases(out, start, np.zeros((len(out.motions) + 1, 3)), spans)
     return out

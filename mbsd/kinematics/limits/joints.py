@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,10 +24,6 @@ from mbsd.arrays.reactions import marker_places
 from mbsd.base.errors import BranchError, LimitError
 from mbsd.equations.relative.curve_pieces import CLOSED, FARTHEST, SPAN
 from mbsd.equations.system import LAST
-
-if TYPE_CHECKING:
-    from mbsd.arrays.packing import Packed
-
 
 SLACK = 1e-9
 """In sizes and rad: a motion may touch its limit."""

@@ -7,6 +7,7 @@ is the value that F has when all other constraints are closed, unless the joint 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -36,15 +37,16 @@ def active_rows(packed: Packed) -> set[int]:
     return set(range(len(packed.ws.phi))) - {int(row) for row in special[special[:, ACTIVE] == 0, ROW]}
 
 
-def take_phases(packed: Packed, q: np.ndarray, drive: np.ndarray) -> bool:
+def take_phases(packed: Packed, q: np.ndarray, drive: np.ndarray, entries: Sequence[int] | None = None) -> bool:
     """Set the constants of the phased rows from the pose q (3 nb,), where all other rows are closed.
 
-    Returns whether joints gave angles that belong together, so that the pose must be closed again.
+    ``entries`` of the table of special constraints: by default all that are phased. Returns True if joints gave angles
+    that belong together, so that the pose must be closed again.
     """
     from mbsd.equations.assembly import residual_and_jacobian
     from mbsd.equations.relative.equation import DIRECTION, PHASE, WRAPS
 
-    given, phased = False, packed.specials.phased
+    given, phased = False, packed.specials.phased if entries is None else entries
     if not phased:
         return given
     special, numbers = packed.system.special.copy(), packed.system.numbers.copy()
@@ -52,21 +54,24 @@ def take_phases(packed: Packed, q: np.ndarray, drive: np.ndarray) -> bool:
     pins = _pins_of(packed, q)
     for k in phased:
         i, j, at = (int(system.special[k, column]) for column in (MARKER_I, MARKER_J, AT))
+        joint = packed.specials.joints[k]
         arm = _arm_of(packed, q, pins, i, j)
+        if arm is None and packed.specials.names[k] == "span":
+            arm = 0  # a cable between two carriers does not turn round in the world
         if arm is not None:
             special[k, ARM] = arm
             line = _place(packed, q, j) - _place(packed, q, i)
             numbers[at + DIRECTION] = math.atan2(line[1], line[0]) - q[3 * arm + 2]
             # relative to the arm; the equation works in the axes of marker i
-            numbers[at + DIRECTION] -= packed.specials.joints[k].i.angle
+            numbers[at + DIRECTION] -= joint.i.angle
             numbers[at + WRAPS] = 0.0
         special[k, ACTIVE] = 1
         numbers[at + PHASE] = 0.0
-        pose, phase = q, packed.specials.joints[k].params.get("phase")
+        pose, phase = q, joint.params.get("phase")
         if phase is not None:
             given, pose = True, _turned_to(packed, q, (i, j), phase)
         residual_and_jacobian(system, pose, drive, packed.ws)
-        numbers[at + PHASE] = packed.ws.equation[k, 0]
+        numbers[at + PHASE] = packed.ws.equation[k, 0] - joint.params.get("slack", 0.0)
     packed.system = system
     return given
 

@@ -9,16 +9,7 @@ from functools import cached_property
 import cadquery as cq
 
 from mbsd import Mechanism, Solution
-from mechanisms.stages.automatic.assembly import (
-    ROD,
-    back_plate,
-    built,
-    fitted,
-    kernel_refusals,
-    materials,
-    place,
-    refuse_letters,
-)
+from mechanisms.stages.automatic import assembly
 from mechanisms.stages.automatic.body_shapes import Joined
 from mechanisms.stages.automatic.decision import decided
 from mechanisms.stages.automatic.features import laid_out
@@ -153,7 +144,7 @@ class Automatic:
         """
         self._known(body)
         self._refuse_along("engrave", "engrave its solids (shared/shapes/engraving.py)")
-        refuse_letters(self.m.name, word)
+        assembly.refuse_letters(self.m.name, word)
         if body in self._replaced:
             raise UserError(f"{self.m.name}: '{body}' is replaced; engrave its solids (shared/shapes/engraving.py)")
         self._marks.append((body, Mark(word, *at, height or 0.0)))
@@ -269,9 +260,9 @@ class Automatic:
         if self.along is not None:
             return self._solids_along(self.along)
         plan = self.plan()
-        made = Bodies(fitted(built(plan, self.heights, engraved_too)) | self._replaced)
+        made = Bodies(assembly.fitted(assembly.built(plan, self.heights, engraved_too)) | self._replaced)
         made.notes = self._notes()
-        scale, plate = self.sizes.scale, back_plate(plan)
+        scale, plate = self.sizes.scale, assembly.back_plate(plan)
         poses = {body: pose * [scale, scale, 1.0] for body, pose in self.layout.poses.items()}
         hold(made, self.mount, plate and plate.scaled(scale), poses, self.sizes)
         for body in self.layout.apart.intersection(self.m.bodies):
@@ -290,7 +281,7 @@ class Automatic:
         return made
 
     def _solids_along(self, along: Along) -> Bodies:
-        made = Bodies(fitted(solids(along, self._materials, self.mount, self._base_under)) | self._replaced)
+        made = Bodies(assembly.fitted(solids(along, self._materials, self.mount, self._base_under)) | self._replaced)
         made.along, made.notes = True, self._notes()
         plate = plate_of(along, self.mount, self._base_under)
         hold(made, self.mount, plate, along.machine.poses, self.sizes)
@@ -314,8 +305,8 @@ class Automatic:
 
     def plan(self) -> Plan:
         """Return eyes, feet and hardware, before plates and base are built."""
-        rods = dict.fromkeys(self.layout.rods, ROD)
-        named = materials(self.m) | rods | self._materials
+        rods = dict.fromkeys(self.layout.rods, assembly.ROD)
+        named = assembly.materials(self.m) | rods | self._materials
         plan = Plan(self.layout, named | {web: named[body] for web, body in self.layout.webs.items()})
         plan.mount = self.mount
         plan.reserve([*self.m.bodies, *rods, "base_plate", *self.layout.webs])
@@ -323,9 +314,11 @@ class Automatic:
         shown = Shown("parts", self.m.name, len(self.layout.features), "joints, springs and the like shaped")
         for feature in self.layout.features:
             shown.advance()
-            with kernel_refusals(self.m.name, f"the parts of '{getattr(feature, 'name', type(feature).__name__)}'"):
+            with assembly.kernel_refusals(
+                self.m.name, f"the parts of '{getattr(feature, 'name', type(feature).__name__)}'"
+            ):
                 build(feature, plan, self.heights)
-        place(self._marks, plan)
+        assembly.place(self._marks, plan)
         return plan
 
     @cached_property

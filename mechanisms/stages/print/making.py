@@ -15,6 +15,7 @@ from mechanisms.stages.print.laying import Bed, Laid, Sheet, fitting, groups, la
 from mechanisms.stages.print.plates import Placed, dxf, file_of, packed, section, stl, three_mf
 from shared.contract import Piece
 from shared.contract.quantity import written
+from shared.stage.console import markdown_table
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
 from shared.stage.paths import Out
@@ -73,14 +74,13 @@ def markdown(title: str, bed: str, made: Sequence[Product], bought: Sequence[Bou
         f"{bed} mm. Where a DXF is named, the piece can be cut from a sheet of this thickness: eased edges, pockets, "
         "counterbores and engraving are not in it, and what stands above the sheet is listed.",
         "",
-        "| piece | count | material | x x y x z (mm) | mass | plate | outline |",
-        "|---|--:|---|---|--:|---|---|",
     ]
-    lines += [f"| {' | '.join(_cells(part))} |" for part in made]
+    head = ("piece", "count", "material", "x x y x z (mm)", "mass", "plate", "outline")
+    lines += markdown_table(head, map(_cells, made), numbers=[1, 4])
     lines += ["", f"## To buy: {sum(len(item.names) for item in bought)}", ""]
     if bought:
-        lines += ["| what | count | for |", "|---|--:|---|"]
-        lines += [f"| {item.what} | {len(item.names)} | {', '.join(item.names)} |" for item in bought]
+        items = [(item.what, str(len(item.names)), ", ".join(item.names)) for item in bought]
+        lines += markdown_table(("what", "count", "for"), items, numbers=[1])
     else:
         lines += ["Nothing: no piece has the sizes of a standard."]
     return "\n".join(lines) + "\n"

@@ -56,6 +56,7 @@ def shape_of(element: Joint | Force) -> Shape:
         teeth=[] if teeth is None else [teeth] if isinstance(teeth, int) else list(teeth),
         ring=bool(params.get("internal") or params.get("inside")),
         crossed=bool(params.get("crossed")),
+        clockwise=[params["clockwise_i"], params["clockwise_j"]] if "clockwise_i" in params else [],
         slots=params.get("slots"),
         pin_radius=_positive(params.get("radius")) if geneva or of_pin else None,
         length=None if of_pin else params.get("length", params.get("free_length")),

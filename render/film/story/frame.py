@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Literal
 
 import msgspec
 
@@ -124,6 +123,8 @@ LETTER, SMALL = 0.047, 0.034
 """Heights of letters: of captions, and of rates, names and numbers of the strip."""
 LINES = 2
 """Lines of a caption at most."""
+LONGEST = 85
+"""Letters of a caption that tells an insight, at most, in a picture as wide as high; a wider one has room for more."""
 
 
 def below(aspect: float, strip: bool) -> float:
@@ -139,27 +140,3 @@ def side_width(aspect: float) -> float:
 def above(aspect: float) -> float:
     """Return the same of the rate of time at the top."""
     return 0.05 / sides(aspect)[1]
-
-
-# Reasons to stop: an event or a peak of the motion, as plain data; ``render/report/facts.py`` has them.
-
-Kind = Literal["impact", "turns_back", "event", "effort", "reaction", "speed"]
-
-
-@dataclass(frozen=True)
-class Reason:
-    """Something that is worth a stop."""
-
-    time: float
-    """s"""
-    kind: Kind
-    name: str
-    """Name of the element: a contact, a follower, an event, a driver or force, a joint, a point."""
-    amount: str = ""
-    """Amount, with its unit."""
-    joint: str = ""
-    """The joint that carries most at that time, if joints carry anything ..."""
-    force: str = ""
-    """... and how much."""
-    words: tuple[str, ...] = field(default=())
-    """Names by which an author may ask for it."""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from render.film.film import Film
-from render.film.story.frame import Reason, Shot
+from render.film.story.frame import Shot
 from render.film.story.scenery import Scenery
 from render.film.story.shots.assembly import assembly
 from render.film.story.shots.close_ups import macro, section
@@ -14,6 +14,8 @@ from render.film.story.shots.motion import last, motion, title
 from render.film.story.shots.reason import loop, reason
 from render.film.story.story import Story, curves_of
 from render.film.story.words import words_in
+from render.insights import Insight
+from render.insights.stops import words_of
 from render.presets import Preset
 from shared.contract.shot import STORY_SHOTS
 from shared.stage.errors import UserError, did_you_mean
@@ -32,18 +34,19 @@ SHALLOW = 13.0
 
 
 def planned(
-    film: Film, forces: Film | None, reasons: Sequence[Reason], preset: Preset, seconds: float = 0.0,
-    cut: Film | None = None,
+    film: Film, forces: Film | None, reasons: Sequence[Insight], preset: Preset, seconds: float = 0.0,
+    cut: Film | None = None, told: Sequence[Insight] = (),
 ) -> Story:  # fmt: skip
     """Return the story of a film.
 
     ``forces`` is the same with arrows, None where nothing has any, ``cut`` the same cut open, None of a shot without a
-    section; time stops for the first of ``reasons``, unless the shot asks for another. With ``seconds`` it is a loop of
+    section; time stops for the first of ``reasons``, unless the shot asks for another, and ``told`` is all that the
+    motion shows. With ``seconds`` it is a loop of
     that length.
 
     Raises UserError with place and remedy for wishes of the shot that cannot be.
     """
-    scenery = replace(scenery_of(film, forces, reasons, preset), cut=cut)
+    scenery = replace(scenery_of(film, forces, reasons, preset), cut=cut, told=told)
     if seconds:
         return _assemble(scenery, [loop(scenery, seconds)])
     most = BUDGET * min(film.clock.frames, film.clock.moving + 1) * (2 / scenery.step)
@@ -55,7 +58,7 @@ def planned(
     return story
 
 
-def scenery_of(film: Film, forces: Film | None, reasons: Sequence[Reason], preset: Preset) -> Scenery:
+def scenery_of(film: Film, forces: Film | None, reasons: Sequence[Insight], preset: Preset) -> Scenery:
     """Return the scenery that the shots share. Raises UserError for an unknown event or language."""
     wishes, mechanism = film.shot.story, film.motion.mechanism
     base = preset.name.partition("-")[0]
@@ -108,7 +111,7 @@ SHOTS: dict[str, Callable[[Scenery], Shot | None]] = {
 """Shots by the names that a shot.py gives; the title needs what follows it."""
 
 
-def _wished_first(mechanism: str, event: str | None, reasons: Sequence[Reason]) -> list[Reason]:
+def _wished_first(mechanism: str, event: str | None, reasons: Sequence[Insight]) -> list[Insight]:
     """Return the reasons, that of the shot's ``event`` first.
 
     Raises UserError if nothing like it ever happens.
@@ -116,9 +119,9 @@ def _wished_first(mechanism: str, event: str | None, reasons: Sequence[Reason]) 
     if event is None:
         return list(reasons)
     for reason_ in reasons:
-        if event in reason_.words:
+        if event in words_of(reason_):
             return [reason_, *(other for other in reasons if other is not reason_)]
-    known = list(dict.fromkeys(words for other in reasons for words in other.words))
+    known = list(dict.fromkeys(words for other in reasons for words in words_of(other)))
     raise UserError(
         f"{mechanism}: shot.story.event names '{event}', which never happens in this motion; its events are: "
         f"{', '.join(known) or 'nothing'}{did_you_mean(event, known)}"

@@ -18,9 +18,10 @@ from render.film.framing import REFERENCE_WIDTH, SENSOR, CameraPose, axes, depth
 from render.film.pieces import Lift, exploded
 from render.film.scene import Hidden
 from render.film.story import frame
-from render.film.story.frame import Over, Picture, Reason
+from render.film.story.frame import LONGEST, Over, Picture
 from render.film.story.story import Curve
 from render.film.story.words import rate_words
+from render.insights import Insight
 from shared.contract.parts import Vector
 from shared.contract.shot import Story as Wishes
 
@@ -148,7 +149,8 @@ class Scenery:
     film: Film
     forces: Film | None
     wishes: Wishes
-    reasons: Sequence[Reason]
+    reasons: Sequence[Insight]
+    """Stops, the first one first."""
     curves: Sequence[Curve]
     say: Callable[..., str]
     step: int
@@ -157,6 +159,8 @@ class Scenery:
     """Lens blur of a macro, in pixels of a picture 1280 wide; 0 is a pinhole."""
     cut: Film | None = None
     """The same film cut open; None where the shot has no section."""
+    told: Sequence[Insight] = ()
+    """All that the motion shows, the most telling first."""
     scale: float = 1.0
     """Part of the seconds in which pictures move; what is cut is held instead."""
     turning: bool = True
@@ -282,6 +286,21 @@ class Scenery:
             hidden=hidden,
             cut=cut,
         )
+
+    def sentence(self, what: Insight) -> str:
+        """Return an insight as a caption in the language of the story."""
+        return what.sentence(self.wishes.language)
+
+    def fits(self, what: Insight) -> bool:
+        """Return True if the sentence of an insight is short enough for a caption."""
+        return len(self.sentence(what)) <= LONGEST * max(1.0, self.film.aspect)
+
+    @property
+    def of_motion(self) -> Insight | None:
+        """What the machine does as long as it runs, the most telling first that is no stop; None without any."""
+        stop = self.reasons[0].template if self.reasons else ""
+        lasting = [each for each in self.told if each.end > each.start] or list(self.told)
+        return next((each for each in lasting if each.template != stop and self.fits(each)), None)
 
     def moving(self, seconds: float) -> float:
         """Return seconds of a move, as far as the budget of pictures lets it take them."""

@@ -12,7 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.film.clock import TimeMap
-from render.film.story.frame import Caption, Over, Picture, Reason, Shot
+from render.film.story.frame import Caption, Over, Picture, Shot
+from render.insights import Insight
+from render.insights.stops import carried
 from render.magnitudes import NOISE, effort_floor, force_scale, without_noise
 from shared.contract import Motion
 from shared.contract.signals import SIGNALS
@@ -66,15 +68,16 @@ def curve_of(motion: Motion, name: str) -> Curve | None:
     return None
 
 
-def curves_of(motion: Motion, wished: Sequence[str] | None, reasons: Sequence[Reason]) -> list[Curve]:
+def curves_of(motion: Motion, wished: Sequence[str] | None, reasons: Sequence[Insight]) -> list[Curve]:
     """Return the curves of ``wished`` names, or of the first reason, the drive and the fastest body.
 
     The latter are shown without a wish.
     """
     if wished is not None:
         return [curve for name in wished if (curve := curve_of(motion, name)) is not None]
-    first = [reasons[0].name, reasons[0].joint] if reasons else []
-    fast = [reason.name for reason in reasons if reason.kind == "speed"]
+    stop = reasons[0] if reasons else None
+    first = [*stop.joints, *stop.bodies[::-1], carried(motion, stop.start)[0]] if stop is not None else []
+    fast = [name for reason in reasons if reason.kind == "speed" for name in reason.joints]
     names = dict.fromkeys([*first, *motion.drivers, *fast, *motion.points, *motion.bodies])
     curves = [curve for name in names if name and (curve := curve_of(motion, name)) is not None]
     lively = [curve for curve in curves if _is_lively(curve)]

@@ -22,8 +22,8 @@ from render.frames.film import finish, has_sound, sound_key, wav_of
 from render.frames.story.drawing import Drawing
 from render.frames.story.strip import Strip
 from render.frames.story.telling import Telling, refuse_long, shown_plain
+from render.insights.stops import stops
 from render.presets import Preset
-from render.report.facts import reasons
 from shared.stage.console import duration, say
 from shared.stage.files import write_bytes
 from shared.stage.paths import Out, compared, mechanism_name, owner_of, variant_of
@@ -56,7 +56,7 @@ def pair_of(outs: Sequence[Out], preset: Preset, half: Preset) -> Pair:
     """Return the stories of two variants, each in pictures of a ``half`` preset. Raises UserError for unfit wishes."""
     films = [_film(out, half) for out in outs]
     spans = (_span(films[0]), _span(films[1]))
-    whys = [reasons(film.motion) for film in films]
+    whys = [stops(film.motion) for film in films]
     curves = _common(films, curves_of(films[0].motion, films[0].shot.story.curves, whys[0]))
     most = differences(*curves, spans, (films[0].clock.repeats, films[1].clock.repeats))
     if most:  # what the words are of is seen in pictures that have room for fewer curves, too

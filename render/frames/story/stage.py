@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from render import FRAME_SOURCES
 from render.film.inputs import encoder_version, named, stage_key
 from render.frames.film import finish, has_sound, sound_key, wav_of
 from render.freshness import clearance_files
@@ -103,7 +104,7 @@ def _key(out: Out, preset: Preset, show: str, loop: float) -> str:
 def word_sources() -> str:
     """Return the hash of the sources of what stories say, beside those of pictures."""
     room = Path(__file__).parents[2]
-    return sources_hash(room / "report", room / "magnitudes.py")
+    return sources_hash(room / "report", *FRAME_SOURCES)
 
 
 def _described(out: Out) -> str:

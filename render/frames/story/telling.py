@@ -15,7 +15,7 @@ from render.film.film import Film
 from render.film.inputs import refuse_missing
 from render.film.scene import Point, Scene, State, Writing
 from render.film.section import seen_from
-from render.film.story.frame import Picture, Reason
+from render.film.story.frame import Picture
 from render.film.story.planned import planned
 from render.film.story.story import Story
 from render.film.story.words import plain
@@ -23,10 +23,12 @@ from render.frames.frames import Pictures
 from render.frames.story.drawing import BETWEEN, Drawing, caption_lines
 from render.frames.story.strip import Strip
 from render.freshness import current_clearance
+from render.insights import Insight, insights
+from render.insights.loops import marks
+from render.insights.stops import stops, words_of
 from render.presets import Preset
 from render.report import description
-from render.report.facts import facts, reasons
-from render.report.transmission import marks
+from render.report.facts import facts
 from shared.contract import Motion, read_motion, read_parts
 from shared.contract.geometry import with_rods
 from shared.contract.shot import Shot, read_shot, shown
@@ -94,7 +96,7 @@ def _along(tail: Point, tip: Point, part: float) -> Point:
 
 # Reads the files of a machine and makes its story: the films it is rendered from, its shots, what is drawn over.
 
-SHOWN = {"effort": "forces", "speed": "velocities"}
+SHOWN = {"effort_peak": "forces", "speed": "velocities", "speed_peak": "velocities", "difference": "velocities"}
 """Quantities of arrows by the kind of reason; reactions else."""
 FACTS = 4
 """Facts at the end, at most."""
@@ -156,13 +158,13 @@ def telling_of(
     if shots is not None:
         shot = msgspec.structs.replace(shot, story=Wishes(shots=shots, language=shot.story.language))
     motion = read_motion(out.motion, out.name)
-    why = reasons(motion)
+    why = stops(motion)
     whole = with_rods(motion, parts)
     film = Film(whole, parts, shown_plain(shot), out.parts_folder, preset.aspect)
     chosen = _chosen(shot.story.event, why)
     arrows = _with_arrows(show or _shows(motion, chosen), film)
     cut = _cut_open(shot, film)
-    story = planned(film, arrows, why, preset, loop, cut)
+    story = planned(film, arrows, why, preset, loop, cut, insights(motion))
     clearance = current_clearance(out, parts, "film")
     drawing = _drawing(out, preset, film, story, facts(motion, parts, clearance))
     refuse_long(out.name, story, preset)
@@ -174,11 +176,11 @@ def shown_plain(shot: Shot) -> Shot:
     return msgspec.structs.replace(shot, show=(), title=None, section=0.0)
 
 
-def _chosen(event: str | None, why: list[Reason]) -> Reason | None:
-    return next((reason for reason in why if event is None or event in reason.words), None)
+def _chosen(event: str | None, why: list[Insight]) -> Insight | None:
+    return next((reason for reason in why if event is None or event in words_of(reason)), None)
 
 
-def _shows(motion: Motion, reason: Reason | None) -> str:
+def _shows(motion: Motion, reason: Insight | None) -> str:
     """Return the quantities that arrows show."""
     if reason is None:
         return "velocities"

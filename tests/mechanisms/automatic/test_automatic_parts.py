@@ -38,7 +38,7 @@ from shared.shapes.standards import CIRCLIPS, SHIM_OUTER, Fit, screw_length, scr
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, Out
 from tests.mechanisms.author_project import Project
-from tests.mechanisms.automatic.layouts import meets
+from tests.mechanisms.automatic.proofs import meets
 from tests.mechanisms.automatic.test_random_mechanisms import KINDS, SEED
 from tests.shared.shape_checks import checked
 from tools.hunt.case import drawn

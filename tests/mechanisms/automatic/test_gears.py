@@ -20,7 +20,7 @@ from mechanisms.stages.automatic.wheels.gears import module_of
 from mechanisms.stages.automatic.wheels.wheels import TUBE, Wheel, wheel_shape
 from shared.shapes.involute import foul_inside, longest_tip, shortest_tip, toothed
 from shared.stage.errors import UserError
-from tests.mechanisms.automatic.layouts import meets
+from tests.mechanisms.automatic.proofs import meets
 from tests.shared.shape_checks import checked
 from tools.models.outlines import gap
 

@@ -22,7 +22,7 @@ from mechanisms.stages.automatic.slides.slots import Slot
 from mechanisms.stages.automatic.wheels.wheels import Wheel
 from shared.shapes.solid import Solid
 from shared.stage.errors import UserError
-from tests.mechanisms.automatic.layouts import meets
+from tests.mechanisms.automatic.proofs import meets
 from tests.shared.shape_checks import checked
 from tools.hunt_parts.case import parts_of
 from tools.models.four_bars import model

@@ -29,7 +29,7 @@ from shared.shapes.standards import Fit
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
 from shared.stage.scale import Scale, scale_of
-from tests.mechanisms.automatic.layouts import meets
+from tests.mechanisms.automatic.proofs import meets
 from tools.hunt.case import drawn
 from tools.hunt_parts import case
 from tools.hunt_parts.case import parts_of
@@ -73,10 +73,7 @@ def test_one_sound_piece(eyes: list[tuple[float, float, Eye]]) -> None:
 
 
 @given(
-    count=st.integers(3, 400),
-    waves=st.integers(1, 12),
-    height=st.floats(0.0, 300.0),
-    length=st.floats(20.0, 5000.0),
+    count=st.integers(3, 400), waves=st.integers(1, 12), height=st.floats(0.0, 300.0), length=st.floats(20.0, 5000.0)
 )
 def test_a_plainer_hull_keeps_all_points(count: int, waves: int, height: float, length: float) -> None:
     """Wavy slots of any length: none is left out by more than FLAT."""

@@ -17,7 +17,7 @@ from mechanisms.stages.automatic.layout import layers
 from mechanisms.stages.automatic.layout.layers import Clauses, Purse, Undecided
 from mechanisms.stages.automatic.pins.bridges import Swept
 from shared.stage.errors import UserError
-from tests.mechanisms.automatic.layouts import meets
+from tests.mechanisms.automatic.proofs import meets
 from tools.hunt.case import drawn
 from tools.hunt.loop import seeds
 from tools.hunt_parts import case

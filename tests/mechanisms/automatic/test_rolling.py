@@ -22,7 +22,7 @@ from mechanisms.stages.automatic.rolling.tracks import Track, circle, turns_left
 from mechanisms.stages.automatic.rolling.tracks import closed_normals as normals
 from shared.shapes.outline import distances
 from shared.stage.errors import UserError
-from tests.mechanisms.automatic.layouts import meets
+from tests.mechanisms.automatic.proofs import meets
 from tests.shared.shape_checks import checked
 from tools.hunt_parts.case import parts_of
 

@@ -20,7 +20,7 @@ from shared.shapes import outline
 from shared.shapes.build import extruded
 from shared.shapes.link import Eye
 from shared.stage.errors import UserError
-from tests.mechanisms.automatic.layouts import meets
+from tests.mechanisms.automatic.proofs import meets
 from tests.shared.shape_checks import checked
 
 # Blocks along one line: on one rail where they never meet, on rails one above the other where they pass.

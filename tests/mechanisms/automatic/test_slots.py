@@ -23,7 +23,7 @@ from mechanisms.stages.automatic.slides.slots import Slot
 from shared.shapes.build import extruded
 from shared.shapes.outline import band, distances, loop, rounded_rectangle, sharpest
 from shared.stage.errors import UserError
-from tests.mechanisms.automatic.layouts import meets
+from tests.mechanisms.automatic.proofs import meets
 from tools.hunt_parts.case import parts_of
 from tools.hunt_parts.outcome import BUILT
 from tools.models.assur_models import six_bar_with_welds

@@ -17,7 +17,7 @@ from mechanisms.stages.automatic.pins.springs import Stretching, Stud
 from mechanisms.stages.parts.meshes import mass_of
 from shared.contract.materials import MATERIALS
 from shared.shapes.screw import Collar, ball_stud
-from tests.mechanisms.automatic.layouts import meets
+from tests.mechanisms.automatic.proofs import meets
 from tools.hunt_parts.case import parts_of
 from tools.hunt_parts.outcome import BUILT
 

@@ -177,10 +177,7 @@ def test_a_disc_on_a_wheel_of_many_teeth_is_proven_with_little_work(monkeypatch:
     outline = CrossSection([1e3 * curve_path(points, True)[::-1]])
     mesh = outline.extrude(7.0).to_mesh64()
     triangles = np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts).astype(int)]
-    pieces = [
-        MeshPiece("wheel", "disc", triangles),
-        disc("lever", "roller", 90.0, 0.0, 1e3 * ROLLER - ROOM, 1.0, 6.0),
-    ]
+    pieces = [MeshPiece("wheel", "disc", triangles), disc("lever", "roller", 90.0, 0.0, 1e3 * ROLLER - ROOM, 1.0, 6.0)]
     looked: list[int] = []
     plain = Search.run
 

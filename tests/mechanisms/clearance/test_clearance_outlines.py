@@ -91,8 +91,7 @@ def test_points_inside_are_found_and_points_in_bores_are_not() -> None:
 
 
 @given(
-    st.lists(st.tuples(st.floats(-3, 3), st.floats(-3, 3)), min_size=4, max_size=4),
-    st.sampled_from([1e-3, 1.0, 1e3]),
+    st.lists(st.tuples(st.floats(-3, 3), st.floats(-3, 3)), min_size=4, max_size=4), st.sampled_from([1e-3, 1.0, 1e3])
 )
 def test_distance_of_segments_is_that_of_their_points(ends: list[tuple[float, float]], scale: float) -> None:
     a, b, c, d = (scale * complex(*end) for end in ends)

@@ -196,12 +196,7 @@ def test_quarter_car_on_a_bump_is_the_oscillator_of_two_masses(variant: dict[str
         body, hub, climb, rise = state
         strut = p.stiffness * (p.hub + spring - (body - hub)) - p.damping * (climb - rise)
         carried = p.unsprung + p.wheel
-        return [
-            climb,
-            rise,
-            strut / p.sprung - p.gravity,
-            (tyre(t, hub, rise) - strut) / carried - p.gravity,
-        ]
+        return [climb, rise, strut / p.sprung - p.gravity, (tyre(t, hub, rise) - strut) / carried - p.gravity]
 
     sol = car.build(p).simulate(1.8 / p.speed, 180)
     body, hub = sol.body("body"), sol.body("wheel")

@@ -31,7 +31,7 @@ from shared.contract.geometry import BeltPath
 from shared.contract.shot import Shot
 from shared.stage.paths import mechanism_names
 from tests.drawing.test_carried import check
-from tests.mechanisms.every_folder import folders_and_variants
+from tests.mechanisms.author_project import folders_and_variants
 
 # Machines of the gallery that shake and run up, against their closed forms and an integration by others.
 

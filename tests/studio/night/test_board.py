@@ -1,11 +1,24 @@
-"""The order of steps: every one runs once after those that it needs, the render never waits, probes come first."""
+"""What a night shows: its board, its status, and how long a step may be silent."""
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from render import freshness
+from render.blender.process import FLOOR, KERNELS, TIMES
+from shared.stage.paths import Out
+from shared.stage.stages import Stage, key_of
+from studio.night import status
 from studio.night.plan.steps import FILM, PROBE, STEPS, Board, followers
+from studio.night.process import STAGE, TWICE, limit
+from studio.night.runs import FilmRecord, NightRecord, Run
+
+# The order of steps: every one runs once after those that it needs, the render never waits, probes come first.
+
 
 NAMES = [f"m{number}" for number in range(4)]
 NEEDS = {step.name: step.needs for step in STEPS}
@@ -87,3 +100,77 @@ def test_a_mechanism_that_another_process_has_holds_no_film_up():
     board.away.add("a")
     assert list(board.ready(True)) == [("b", FILM)]
     assert not board.is_over()
+
+
+# ``mbsd status`` says which films are done, and which of these are of an older version of their machine.
+
+
+FILMED = ["four_bar", "pendulum", "trammel"]
+
+
+@pytest.fixture
+def recorded(out_root: Path, monkeypatch: pytest.MonkeyPatch) -> NightRecord:
+    """Return the record of a finished run; the trammel's film comes from elsewhere."""
+    monkeypatch.setattr(freshness, "current_names", set)
+    for name in FILMED:
+        out = Out(name)
+        for path in (out.motion, out.film("draft")):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(f"as {name} was filmed")
+        if name != "trammel":
+            Stage(out, "film-draft", key_of(out.motion), [out.film("draft")]).record()
+    films = {name: FilmRecord(outcome="done", steps={}, all=30) for name in FILMED}
+    return NightRecord(process=1, host="here", preset="draft", started="", updated="", ended="done", films=films)
+
+
+def _states(recorded: NightRecord) -> dict[str, str]:
+    lines = [line.split() for line in status.words(Run(1), recorded, alive=False)]
+    return {line[0]: " ".join(line[2:]) for line in lines if line and line[0] in FILMED}
+
+
+def test_films_of_the_machines_as_they_are_are_done(recorded: NightRecord) -> None:
+    assert _states(recorded) == dict.fromkeys(FILMED, "done")
+
+
+def test_a_film_of_the_motion_before_is_marked(recorded: NightRecord) -> None:
+    Out("pendulum").motion.write_text("solved again")
+    assert _states(recorded) == {**dict.fromkeys(FILMED, "done"), "pendulum": "done, of an older version"}
+
+
+def test_a_film_is_marked_whose_machine_is_not_solved_again_yet(
+    recorded: NightRecord, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(freshness, "current_names", lambda names: {"pendulum"})
+    assert _states(recorded)["four_bar"] == "done, of an older version"
+    assert _states(recorded)["pendulum"] == "done"
+
+
+def test_films_that_failed_are_not_asked(recorded: NightRecord) -> None:
+    recorded.films["pendulum"].outcome = "failed"
+    Out("pendulum").motion.write_text("solved again")
+    assert _states(recorded)["pendulum"] == "failed:"
+
+
+# Longest silence of a step.
+
+
+def test_a_render_has_ten_times_a_picture_twice_over_because_its_stage_starts_blender_again(
+    monkeypatch: pytest.MonkeyPatch,
+):
+    monkeypatch.delenv("MBSD_PATIENCE", raising=False)
+    assert limit(True, 100.0, 3) == pytest.approx(TWICE * TIMES * 100.0)
+    assert limit(True, 0.1, 3) == pytest.approx(TWICE * FLOOR)
+    assert limit(True, None, 3) == pytest.approx(TWICE * FLOOR)
+    assert TWICE > 2
+
+
+def test_the_first_picture_has_time_for_the_kernels_of_a_gpu(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.delenv("MBSD_PATIENCE", raising=False)
+    assert limit(True, 0.1, 0) == pytest.approx(TWICE * KERNELS)
+
+
+def test_steps_without_pictures_have_an_hour_whatever_a_picture_takes(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.delenv("MBSD_PATIENCE", raising=False)
+    assert limit(False, 1000.0, 0) == STAGE
+    monkeypatch.setenv("MBSD_PATIENCE", str(FLOOR / 60))
+    assert limit(False, None, 0) == pytest.approx(STAGE / 60)

@@ -1,18 +1,15 @@
 """Pictures of docs/, drawn from what the code of their pages computes.
 
-Each file of ``pages/`` belongs to the page of its name. Its ``pictures`` gets the variables that the page's code
-leaves behind and returns figures by file name.
+A page's function has its name, gets the variables that the page's code leaves behind and returns figures by file name.
 """
 
 from __future__ import annotations
 
 import contextlib
-import importlib
 import io
-import pkgutil
 import re
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -27,13 +24,16 @@ from matplotlib.transforms import Bbox
 
 from mbsd.pictures import Picture, Svg
 from shared.stage.paths import ROOT
-from tools.documents.figures import pages
+from tools.documents.figures import designs, loads, motions, simulations
 from tools.documents.figures.dark import dark, dark_gif, name_of
 from tools.documents.figures.look import STYLE
 from tools.documents.pages import DOCS, write_changed
 
 BLOCK = re.compile(r"^```python\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
-PAGES = tuple(sorted(module.name for module in pkgutil.iter_modules(pages.__path__)))
+DRAWN: dict[str, Callable[[SimpleNamespace], Mapping[str, Figure | Picture | Svg | bytes]]] = {
+    draw.__name__: draw for chapter in (motions, loads, simulations, designs) for draw in chapter.PAGES
+}
+PAGES = tuple(sorted(DRAWN))
 
 
 def drawn(page: str) -> dict[str, bytes]:
@@ -41,9 +41,7 @@ def drawn(page: str) -> dict[str, bytes]:
     with mpl.rc_context(STYLE):  # pyright: ignore[reportArgumentType]
         variables = _run(page)
         out = {}
-        for name, picture in (
-            importlib.import_module(f"tools.documents.figures.pages.{page}").pictures(variables).items()
-        ):
+        for name, picture in DRAWN[page](variables).items():
             out[name] = _bytes(picture)
             out[name_of(name)] = (dark_gif if name.endswith(".gif") else dark)(out[name])
         pyplot.close("all")
@@ -76,7 +74,10 @@ def _bytes(picture: Figure | Picture | Svg | bytes) -> bytes:
 
 
 def _settle(figure: Figure) -> None:
-    """Lay it out now and round where the axes are: the last bits change from run to run, and names in SVG with them."""
+    """Lay a figure out now and round where its axes are.
+
+    The last bits change from run to run, and names in SVG with them.
+    """
     figure.draw_without_rendering()
     figure.set_layout_engine("none")
     for ax in figure.axes:

@@ -1,4 +1,4 @@
-"""The common look of the pictures of docs/: style, colours, plain axes, words with a line to their place."""
+"""The common look of the pictures of docs/: style, colours, plain axes, words with a line."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Recorded runs in which something happens: contacts, stops, ropes, freewheels, joints that stick, Genevas, events.
+"""Recorded runs with events: contacts, stops, ropes, freewheels, sticking joints, Genevas.
 
     make check-events                 every run beside recorded.jsonl; ONLY=text those whose names contain it
     make record-events                after a change of numbers that is meant, and stated in CHANGELOG.md

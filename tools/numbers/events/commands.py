@@ -37,7 +37,10 @@ class Beside(NamedTuple):
 
 
 def compare(only: str) -> Iterator[Beside]:
-    """Yield runs whose names contain ``only`` beside one row of the loop each; refused runs have no motion."""
+    """Yield runs whose names contain ``only`` beside one row of the loop each.
+
+    Refused runs have no motion.
+    """
     records = read()
     for case in cases():
         record = records[case.name]
@@ -161,7 +164,10 @@ def verdict(case: Case, records: dict[str, Record], outcome: Outcome | None = No
 
 
 def check(only: str) -> int:
-    """Compare all runs whose names contain ``only`` with their records; returns 1 where one is beyond its bounds."""
+    """Compare runs whose names contain ``only`` with their records.
+
+    Returns 1 where one is beyond its bounds.
+    """
     records, started = read(), time.perf_counter()
     chosen = [case for case in cases() if only in case.name]
     bad = [each for each in (verdict(case, records) for case in chosen) if not each.is_good]

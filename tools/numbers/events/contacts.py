@@ -1,4 +1,4 @@
-"""Runs with rigid contacts: points on lines, discs, terrain, with and without friction; wedges, stacks and cradles."""
+"""Runs with rigid contacts: points, discs, terrain, with and without friction; wedges and stacks."""
 
 from __future__ import annotations
 

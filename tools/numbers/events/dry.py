@@ -1,4 +1,4 @@
-"""Runs with joints that stick and slide by events, alone, sharing a load, and beside contacts and stops."""
+"""Runs with joints that stick and slide by events, alone, sharing a load, and beside contacts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Runs in which joints make steps end: Genevas, wheels that may meet, curves that cross themselves, repeated joints."""
+"""Runs whose joints end steps: Genevas, meeting wheels, curves that cross themselves."""
 
 from __future__ import annotations
 

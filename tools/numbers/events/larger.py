@@ -1,4 +1,4 @@
-"""Runs with more: Python functions in forces and joints, states of forces, many contacts or bodies, odd starts."""
+"""Runs with Python functions, states of forces, many contacts or bodies, and odd starts."""
 
 from __future__ import annotations
 

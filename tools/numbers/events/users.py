@@ -1,4 +1,4 @@
-"""Runs with events of the user: compiled functions of frames, Python functions of a moment, actions and releases."""
+"""Runs with events of users: compiled and Python functions, actions and releases."""
 
 from __future__ import annotations
 

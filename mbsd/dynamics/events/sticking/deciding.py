@@ -25,32 +25,7 @@ import math
 
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import apart, internal, lazy
-from mbsd.dynamics.events.arrays import (
-    FAILURE,
-    FORCE,
-    FOUND,
-    FREE,
-    FRICTION,
-    GIVES,
-    GUESS,
-    HOLDING,
-    KINETIC,
-    LAST,
-    LEFT,
-    LIMIT,
-    NO_AGREEMENT,
-    NORMAL,
-    NOW,
-    PUSH,
-    RATE,
-    RELEASED,
-    REST,
-    RESTING,
-    ROW,
-    SIGN,
-    TAKING,
-    TOUCHING,
-)
+from mbsd.dynamics.events import arrays
 from mbsd.dynamics.events.friction import (
     AT_LIMIT,
     BEGINS,
@@ -96,7 +71,7 @@ DEPENDENT = 1e-12
 def begin_giving(contacts):
     """Let no way give way yet."""
     for k in range(contacts.place.shape[0]):
-        contacts.sticks.vector[GIVES, k] = 0.0
+        contacts.sticks.vector[arrays.GIVES, k] = 0.0
 
 
 @internal
@@ -104,7 +79,7 @@ def may_give(contacts):
     """Return True if a way moved in some try."""
     moves = False
     for k in range(gaps_of(contacts), contacts.place.shape[0]):
-        moves = moves or contacts.sticks.vector[GIVES, k] != 0.0
+        moves = moves or contacts.sticks.vector[arrays.GIVES, k] != 0.0
     return moves
 
 
@@ -112,38 +87,38 @@ def may_give(contacts):
 def keep_pushes(contacts):
     """Keep normal forces before they are shared."""
     for k in range(gaps_of(contacts)):
-        contacts.vector[PUSH, k] = contacts.sticks.vector[FORCE, k]
+        contacts.vector[arrays.PUSH, k] = contacts.sticks.vector[arrays.FORCE, k]
 
 
 @internal
 def _limit_of(contacts, k, pushes):
     """Return the limit of friction of a way at rest under normal forces ``pushes`` (c,)."""
     gaps = gaps_of(contacts)
-    if contacts.chosen[RESTING, k] != 0:
-        return contacts.sticks.vector[LIMIT, k]
-    return contacts.friction.number[k - gaps, HOLDING] * pushes[contacts.friction.gap[k - gaps]]
+    if contacts.chosen[arrays.RESTING, k] != 0:
+        return contacts.sticks.vector[arrays.LIMIT, k]
+    return contacts.friction.number[k - gaps, arrays.HOLDING] * pushes[contacts.friction.gap[k - gaps]]
 
 
 @internal
 def note_giving(contacts, rounding):
     """Note which ways move under vector[FORCE], and which gaps push, if any way moves."""
     gaps = gaps_of(contacts)
-    gives = contacts.sticks.vector[GIVES]
-    force = contacts.sticks.vector[FORCE]
-    taking = contacts.chosen[TAKING]
+    gives = contacts.sticks.vector[arrays.GIVES]
+    force = contacts.sticks.vector[arrays.FORCE]
+    taking = contacts.chosen[arrays.TAKING]
     moves = False
     for k in range(gaps, taking.shape[0]):
         if taking[k] != 0:
-            limit = _limit_of(contacts, k, contacts.vector[PUSH])
+            limit = _limit_of(contacts, k, contacts.vector[arrays.PUSH])
             moves = moves or left_of(contacts, force, k, limit, rounding) != 0.0
     if not moves:
         return
     for k in range(taking.shape[0]):
         gives[k] = 0.0
         if taking[k] != 0 and k < gaps:
-            gives[k] = 1.0 if contacts.vector[PUSH, k] > 0.0 else 0.0
+            gives[k] = 1.0 if contacts.vector[arrays.PUSH, k] > 0.0 else 0.0
         elif taking[k] != 0:
-            left = left_of(contacts, force, k, _limit_of(contacts, k, contacts.vector[PUSH]), rounding)
+            left = left_of(contacts, force, k, _limit_of(contacts, k, contacts.vector[arrays.PUSH]), rounding)
             gives[k] = math.copysign(1.0, left) if left != 0.0 else 0.0
 
 
@@ -151,10 +126,10 @@ def note_giving(contacts, rounding):
 def solve_giving(contacts):
     """Fill vector[FORCE] with N and T where ways give way as GIVES says."""
     gaps = gaps_of(contacts)
-    gives = contacts.sticks.vector[GIVES]
-    force = contacts.sticks.vector[FORCE]
-    limit = contacts.sticks.vector[LIMIT]
-    taking = contacts.chosen[TAKING]
+    gives = contacts.sticks.vector[arrays.GIVES]
+    force = contacts.sticks.vector[arrays.FORCE]
+    limit = contacts.sticks.vector[arrays.LIMIT]
+    taking = contacts.chosen[arrays.TAKING]
     friction = contacts.friction
     compliance = friction.compliance
     table = contacts.tableau
@@ -167,12 +142,12 @@ def solve_giving(contacts):
         if (k < gaps) == (gives[k] != 0.0):
             places[n] = k
             n += 1
-        elif k >= gaps and contacts.chosen[RESTING, k] != 0:
+        elif k >= gaps and contacts.chosen[arrays.RESTING, k] != 0:
             force[k] = -gives[k] * limit[k]
     last = 2 * n
     for i in range(n):
         row = places[i]
-        right = -contacts.vector[FREE, row]
+        right = -contacts.vector[arrays.FREE, row]
         for k in range(gaps, taking.shape[0]):
             right -= compliance[row, k] * force[k]
         table[i, last] = right
@@ -182,7 +157,7 @@ def solve_giving(contacts):
             for w in range(friction.gap.shape[0]):
                 p = gaps + w
                 if friction.gap[w] == k and taking[p] != 0 and gives[p] != 0.0:
-                    value -= compliance[row, p] * gives[p] * friction.number[w, HOLDING]
+                    value -= compliance[row, p] * gives[p] * friction.number[w, arrays.HOLDING]
             table[i, j] = value
             table[i, n + j] = 1.0 if i == j else 0.0
     solve_least(table, n)
@@ -191,7 +166,7 @@ def solve_giving(contacts):
     for w in range(friction.gap.shape[0]):
         p = gaps + w
         if taking[p] != 0 and gives[p] != 0.0:
-            force[p] = -gives[p] * friction.number[w, HOLDING] * force[friction.gap[w]]
+            force[p] = -gives[p] * friction.number[w, arrays.HOLDING] * force[friction.gap[w]]
 
 
 @lazy(None)
@@ -246,9 +221,9 @@ def solve_least(table, n):
 def gives_way(contacts, rounding):
     """Return True if ways under vector[FORCE] move as GIVES says, and contacts push or open."""
     gaps = gaps_of(contacts)
-    gives = contacts.sticks.vector[GIVES]
-    force = contacts.sticks.vector[FORCE]
-    taking = contacts.chosen[TAKING]
+    gives = contacts.sticks.vector[arrays.GIVES]
+    force = contacts.sticks.vector[arrays.FORCE]
+    taking = contacts.chosen[arrays.TAKING]
     agrees = True
     for k in range(taking.shape[0]):
         if taking[k] == 0:
@@ -267,17 +242,17 @@ def gives_way(contacts, rounding):
 @internal
 def _find_signs(dyn, contacts, halted):
     """Find signs of sliding of joints, after find_resting; in chosen[RESTING] forces are to decide."""
-    resting = contacts.chosen[RESTING]
+    resting = contacts.chosen[arrays.RESTING]
     joints = contacts.place.shape[0] - contacts.sticks.joint.shape[0]
     for k in range(contacts.place.shape[0]):
         resting[k] = 0
-        if k < joints or contacts.number[k, RELEASED] != 0.0:
+        if k < joints or contacts.number[k, arrays.RELEASED] != 0.0:
             continue
-        rate = contacts.vector[RATE, k]
-        sign = contacts.number[k, SIGN]
+        rate = contacts.vector[arrays.RATE, k]
+        sign = contacts.number[k, arrays.SIGN]
         if not holds(dyn, contacts, k):
             sign = sign if sign != 0.0 else 1.0
-        elif abs(rate) > contacts.number[k, REST]:
+        elif abs(rate) > contacts.number[k, arrays.REST]:
             sign = math.copysign(1.0, rate)
         elif gives(contacts, k):
             sign = 0.0
@@ -286,8 +261,8 @@ def _find_signs(dyn, contacts, halted):
             sign = -sign
         elif sign == 0.0:
             sign = 1.0
-        contacts.number[k, SIGN] = sign
-        dyn.loads.friction_number[contacts.place[k, FRICTION], SENSE] = sign
+        contacts.number[k, arrays.SIGN] = sign
+        dyn.loads.friction_number[contacts.place[k, arrays.FRICTION], SENSE] = sign
 
 
 @internal
@@ -298,7 +273,7 @@ def _choose(dyn, scratch, contacts, v, halted):
     _find_signs(dyn, contacts, halted)
     press(contacts)
     for k in range(contacts.place.shape[0] - contacts.sticks.joint.shape[0], contacts.place.shape[0]):
-        contacts.chosen[TAKING, k] = contacts.chosen[RESTING, k]
+        contacts.chosen[arrays.TAKING, k] = contacts.chosen[arrays.RESTING, k]
 
 
 @lazy(None)
@@ -311,23 +286,33 @@ def _share_rest(contacts, rounding):
     find_left(contacts, rounding)
     within = 0
     for k in range(contacts.place.shape[0]):
-        stays = contacts.chosen[RESTING, k] != 0 and vector[LEFT, k] == 0.0
-        contacts.chosen[TOUCHING, k] = 1 if stays else 0
-        within += contacts.chosen[TOUCHING, k]
+        stays = contacts.chosen[arrays.RESTING, k] != 0 and vector[arrays.LEFT, k] == 0.0
+        contacts.chosen[arrays.TOUCHING, k] = 1 if stays else 0
+        within += contacts.chosen[arrays.TOUCHING, k]
     for w in range(number.shape[0]):
         k = contacts.friction.gap[w]
-        limit = number[w, HOLDING] * vector[FORCE, k]
-        at_rest = within > 0 and contacts.chosen[TAKING, gaps + w] != 0 and vector[FORCE, k] > 0.0
-        if at_rest and left_of(contacts, vector[FORCE], gaps + w, limit, rounding) == 0.0:
-            contacts.chosen[TOUCHING, gaps + w] = 1
+        limit = number[w, arrays.HOLDING] * vector[arrays.FORCE, k]
+        at_rest = within > 0 and contacts.chosen[arrays.TAKING, gaps + w] != 0 and vector[arrays.FORCE, k] > 0.0
+        if at_rest and left_of(contacts, vector[arrays.FORCE], gaps + w, limit, rounding) == 0.0:
+            contacts.chosen[arrays.TOUCHING, gaps + w] = 1
             mixed = True
     if mixed:
         for k in range(gaps):
-            contacts.chosen[TOUCHING, k] = 1 if contacts.chosen[TAKING, k] != 0 and vector[FORCE, k] > 0.0 else 0
-        divide_together(contacts, contacts.chosen[TOUCHING], vector[FORCE], vector[LIMIT], HOLDING)
+            contacts.chosen[arrays.TOUCHING, k] = (
+                1 if contacts.chosen[arrays.TAKING, k] != 0 and vector[arrays.FORCE, k] > 0.0 else 0
+            )
+        divide_together(
+            contacts, contacts.chosen[arrays.TOUCHING], vector[arrays.FORCE], vector[arrays.LIMIT], arrays.HOLDING
+        )
     elif within > 1:
         sticks = contacts.sticks
-        divide(contacts.compliance, contacts.chosen[TOUCHING], vector[FORCE], vector[LIMIT], sticks.division)
+        divide(
+            contacts.compliance,
+            contacts.chosen[arrays.TOUCHING],
+            vector[arrays.FORCE],
+            vector[arrays.LIMIT],
+            sticks.division,
+        )
 
 
 @internal
@@ -339,10 +324,10 @@ def find_left(contacts, rounding):
     count = contacts.place.shape[0]
     vector = contacts.sticks.vector
     for k in range(count):
-        vector[LEFT, k] = 0.0
-        if contacts.chosen[RESTING, k] == 0:
+        vector[arrays.LEFT, k] = 0.0
+        if contacts.chosen[arrays.RESTING, k] == 0:
             continue
-        vector[LEFT, k] = left_of(contacts, vector[FORCE], k, vector[LIMIT, k], rounding)
+        vector[arrays.LEFT, k] = left_of(contacts, vector[arrays.FORCE], k, vector[arrays.LIMIT, k], rounding)
 
 
 @internal
@@ -389,16 +374,16 @@ def _press_joints(dyn, scratch, contacts, lam):
     friction = contacts.friction
     sticks = contacts.sticks
     for k in range(contacts.place.shape[0]):
-        if contacts.chosen[TAKING, k] != 0:
+        if contacts.chosen[arrays.TAKING, k] != 0:
             for r in range(lam.shape[0]):
-                lam[r] += sticks.borne[k, r] * sticks.vector[FORCE, k]
+                lam[r] += sticks.borne[k, r] * sticks.vector[arrays.FORCE, k]
     for w in range(friction.gap.shape[0]):
-        normal = sticks.vector[FORCE, friction.gap[w]]
-        force = -friction.number[w, KINETIC] * friction.number[w, GUESS] * normal
+        normal = sticks.vector[arrays.FORCE, friction.gap[w]]
+        force = -friction.number[w, arrays.KINETIC] * friction.number[w, arrays.GUESS] * normal
         if force != 0.0:
             for r in range(lam.shape[0]):
                 lam[r] += contacts.sticks.borne[gaps_of(contacts) + w, r] * force
-    normal_forces(dyn.loads, scratch.ws, scratch.ws.jac, lam, sticks.normal[FOUND])
+    normal_forces(dyn.loads, scratch.ws, scratch.ws.jac, lam, sticks.normal[arrays.FOUND])
 
 
 @internal
@@ -412,23 +397,27 @@ def _try(dyn, scratch, contacts, v, hair, rounding, giving):
     lam = sticks.lam[1]
     for c in range(load.shape[0]):
         load[c] = sticks.load[0, c]
-    add_friction(dyn, scratch, v, sticks.normal[NOW], load)
+    add_friction(dyn, scratch, v, sticks.normal[arrays.NOW], load)
     largest = 0.0
     for c in range(3, load.shape[0]):
         largest = max(largest, abs(load[c]))
     respond(dyn, scratch, load, 1.0, contacts.rates[1], lam)
     for k in range(contacts.place.shape[0]):
-        row = contacts.place[k, ROW]
-        sticks.vector[LIMIT, k] = 0.0
-        if contacts.chosen[RESTING, k] != 0:
-            sticks.vector[LIMIT, k] = hair * limit_of(dyn, contacts.place[k, FRICTION], sticks.normal[NOW])
-        if contacts.chosen[TAKING, k] != 0:
-            contacts.vector[FREE, k] = along(dyn, scratch, row, contacts.rates[1]) - scratch.ws.right[0, row]
+        row = contacts.place[k, arrays.ROW]
+        sticks.vector[arrays.LIMIT, k] = 0.0
+        if contacts.chosen[arrays.RESTING, k] != 0:
+            sticks.vector[arrays.LIMIT, k] = hair * limit_of(
+                dyn, contacts.place[k, arrays.FRICTION], sticks.normal[arrays.NOW]
+            )
+        if contacts.chosen[arrays.TAKING, k] != 0:
+            contacts.vector[arrays.FREE, k] = along(dyn, scratch, row, contacts.rates[1]) - scratch.ws.right[0, row]
     pressed = contacts.friction.compliance
     if giving:
         solve_giving(contacts)
     else:
-        if not solve_with_friction(contacts, pressed, contacts.vector[FREE], HOLDING, sticks.vector[FORCE]):
+        if not solve_with_friction(
+            contacts, pressed, contacts.vector[arrays.FREE], arrays.HOLDING, sticks.vector[arrays.FORCE]
+        ):
             return -1.0
         keep_pushes(contacts)
         if sticks.joint.shape[0] > 0:
@@ -447,8 +436,8 @@ def _agree(dyn, scratch, contacts, v, hair, rounding, giving):
     weight = 1.0
     for k in range(count):
         before = dyn.loads.normal[X, k]
-        normal[NOW, k] = before if math.isfinite(before) else 0.0
-        normal[LAST, k] = 0.0
+        normal[arrays.NOW, k] = before if math.isfinite(before) else 0.0
+        normal[arrays.LAST, k] = 0.0
     for turn in range(MOST_PASSES):
         largest = _try(dyn, scratch, contacts, v, hair, rounding, giving)
         if largest < 0.0:
@@ -458,22 +447,22 @@ def _agree(dyn, scratch, contacts, v, hair, rounding, giving):
         product = 0.0
         square = 0.0
         for k in range(count):
-            gap = normal[FOUND, k] - normal[NOW, k]
+            gap = normal[arrays.FOUND, k] - normal[arrays.NOW, k]
             if not math.isfinite(gap):
-                contacts.clock[FAILURE] = NO_AGREEMENT
+                contacts.clock[arrays.FAILURE] = arrays.NO_AGREEMENT
                 return -1.0
             worst = max(worst, abs(gap))
-            most = max(most, normal[FOUND, k])
-            product += normal[LAST, k] * (gap - normal[LAST, k])
-            square += (gap - normal[LAST, k]) ** 2
+            most = max(most, normal[arrays.FOUND, k])
+            product += normal[arrays.LAST, k] * (gap - normal[arrays.LAST, k])
+            square += (gap - normal[arrays.LAST, k]) ** 2
         if worst <= (SETTLED if turn < PATIENCE else ROUNDING) * most:
             return largest
         weight = min(max(-weight * product / square, -10.0), 10.0) if turn > 0 and square != 0.0 else 1.0
         for k in range(count):
-            gap = normal[FOUND, k] - normal[NOW, k]
-            normal[LAST, k] = gap
-            normal[NOW, k] = max(normal[NOW, k] + weight * gap, 0.0)
-    contacts.clock[FAILURE] = NO_AGREEMENT
+            gap = normal[arrays.FOUND, k] - normal[arrays.NOW, k]
+            normal[arrays.LAST, k] = gap
+            normal[arrays.NOW, k] = max(normal[arrays.NOW, k] + weight * gap, 0.0)
+    contacts.clock[arrays.FAILURE] = arrays.NO_AGREEMENT
     return -1.0
 
 
@@ -504,15 +493,19 @@ def decide(dyn, scratch, contacts, state, halted, slipping, touched):
         if largest < 0.0:
             return False
         for k in range(count):
-            contacts.vector[NORMAL, k] = contacts.sticks.vector[FORCE, k]
+            contacts.vector[arrays.NORMAL, k] = contacts.sticks.vector[arrays.FORCE, k]
         if not breaks(contacts, FAINT * largest, rounding):
             break
     find_left(contacts, rounding)
     begin_touched(contacts, touched, FAINT * largest, rounding)
     for k in range(count):
-        if k < gaps and contacts.vector[NORMAL, k] != BEGINS and not contacts.vector[NORMAL, k] > FAINT * largest:
-            contacts.vector[NORMAL, k] = 0.0
-        elif contacts.chosen[RESTING, k] != 0:
-            left = contacts.sticks.vector[LEFT, k]
-            contacts.number[k, SIGN] = math.copysign(1.0, left) if left != 0.0 else 0.0
+        if (
+            k < gaps
+            and contacts.vector[arrays.NORMAL, k] != BEGINS
+            and not contacts.vector[arrays.NORMAL, k] > FAINT * largest
+        ):
+            contacts.vector[arrays.NORMAL, k] = 0.0
+        elif contacts.chosen[arrays.RESTING, k] != 0:
+            left = contacts.sticks.vector[arrays.LEFT, k]
+            contacts.number[k, arrays.SIGN] = math.copysign(1.0, left) if left != 0.0 else 0.0
     return True

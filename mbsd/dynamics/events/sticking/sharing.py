@@ -36,14 +36,7 @@ from __future__ import annotations
 
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import apart, internal
-from mbsd.dynamics.events.arrays import (
-    BASIS,
-    BLOCK,
-    FOUND,
-    HELD,
-    NOW,
-    SIDE,
-)
+from mbsd.dynamics.events.arrays import BASIS, BLOCK, FOUND, HELD, NOW, SIDE
 from mbsd.dynamics.events.friction import gives
 from mbsd.dynamics.events.rows import find_answer, read_compliance
 from mbsd.dynamics.formulation import along, derivative, respond

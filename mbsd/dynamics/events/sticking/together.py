@@ -16,30 +16,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, internal, lazy
-from mbsd.dynamics.events.arrays import (
-    ALONE,
-    APART,
-    CLOSED,
-    FOUND,
-    FRICTION,
-    HELD,
-    KIND,
-    KINETIC,
-    LEFT,
-    LIMIT,
-    LOAD,
-    RESTING,
-    ROW,
-    SHARED,
-    SHARING,
-    SIGN,
-    SLIDE,
-    STATIC,
-    TOGETHER,
-    UNSHARED,
-    VALUE,
-    WAY,
-)
+from mbsd.dynamics.events import arrays
 from mbsd.dynamics.events.friction import holds
 from mbsd.dynamics.events.laws import least_part as least
 from mbsd.dynamics.events.laws.division import divide
@@ -83,7 +60,7 @@ def list_rows(contacts, flags, coefficient):
     for k in range(flags.shape[0]):
         if flags[k] != 0:
             work.row[n] = k
-            work.number[UNIT, n] = 1.0 / math.sqrt(contacts.vector[ALONE, k])
+            work.number[UNIT, n] = 1.0 / math.sqrt(contacts.vector[arrays.ALONE, k])
             n += 1
             if k < gaps:
                 first = n
@@ -102,7 +79,7 @@ def _begin_together(dyn, scratch, contacts, flags):
     friction = contacts.friction
     gaps = gaps_of(contacts)
     for k in range(flags.shape[0]):
-        flags[k] = 1 if contacts.number[k, CLOSED] > 0.0 else 0
+        flags[k] = 1 if contacts.number[k, arrays.CLOSED] > 0.0 else 0
     for w in range(friction.gap.shape[0]):
         if flags[friction.gap[w]] != 0:
             flags[gaps + w] = 1
@@ -110,7 +87,7 @@ def _begin_together(dyn, scratch, contacts, flags):
     factor(dyn, scratch)
     find_answers(dyn, scratch, contacts, flags)
     for w in range(friction.gap.shape[0]):
-        if contacts.number[gaps + w, CLOSED] == 0.0:
+        if contacts.number[gaps + w, arrays.CLOSED] == 0.0:
             flags[gaps + w] = 0
 
 
@@ -118,7 +95,7 @@ def _begin_together(dyn, scratch, contacts, flags):
 def _begin_joints(dyn, scratch, contacts, flags):
     """Fill ``flags`` (c,) with joints at rest, with answers where contacts hold and react."""
     for k in range(flags.shape[0]):
-        flags[k] = 1 if contacts.place[k, KIND] == WAY and contacts.number[k, CLOSED] > 0.0 else 0
+        flags[k] = 1 if contacts.place[k, arrays.KIND] == arrays.WAY and contacts.number[k, arrays.CLOSED] > 0.0 else 0
     answer_resting(dyn, scratch, contacts, flags)
 
 
@@ -128,9 +105,9 @@ def _pushes(contacts, k):
     gap = contacts.friction.gap
     gaps = gaps_of(contacts)
     for w in range(gap.shape[0]):
-        sign = contacts.number[gaps + w, SIGN]
-        if gap[w] == k and sign != 0.0 and contacts.number[gaps + w, CLOSED] == 0.0:
-            return gaps + w, contacts.friction.number[w, KINETIC] * sign
+        sign = contacts.number[gaps + w, arrays.SIGN]
+        if gap[w] == k and sign != 0.0 and contacts.number[gaps + w, arrays.CLOSED] == 0.0:
+            return gaps + w, contacts.friction.number[w, arrays.KINETIC] * sign
     return -1, 0.0
 
 
@@ -140,8 +117,8 @@ def _fill(contacts, lam, n):
     work = contacts.sticks.together
     for i in range(n):
         k = work.row[i]
-        work.held[i] = 1 if contacts.number[k, HELD] > 0.0 else 0
-        contacts.sticks.vector[UNSHARED, i] = -lam[contacts.place[k, ROW]] if work.held[i] != 0 else 0.0
+        work.held[i] = 1 if contacts.number[k, arrays.HELD] > 0.0 else 0
+        contacts.sticks.vector[arrays.UNSHARED, i] = -lam[contacts.place[k, arrays.ROW]] if work.held[i] != 0 else 0.0
         way, part = _pushes(contacts, k)
         for j in range(n):
             value = contacts.compliance[work.row[j], k]
@@ -164,16 +141,16 @@ def _fill_multipliers(contacts, lam, before, n, beside):
         add_beside_lam(contacts, lam)
     for i in range(n):
         way, part = _pushes(contacts, work.row[i])
-        change = work.number[FORCE, i] - contacts.sticks.vector[UNSHARED, i]
+        change = work.number[FORCE, i] - contacts.sticks.vector[arrays.UNSHARED, i]
         for r in range(lam.shape[0]):
             lam[r] += borne[work.row[i], r] * change
             if way >= 0:
                 lam[r] -= part * borne[way, r] * change
     for i in range(n):
-        lam[contacts.place[work.row[i], ROW]] = -work.number[FORCE, i]
+        lam[contacts.place[work.row[i], arrays.ROW]] = -work.number[FORCE, i]
         way, part = _pushes(contacts, work.row[i])
         if way >= 0:
-            lam[contacts.place[way, ROW]] = part * work.number[FORCE, i]
+            lam[contacts.place[way, arrays.ROW]] = part * work.number[FORCE, i]
 
 
 @internal
@@ -185,10 +162,10 @@ def _divide(contacts, c, k, together, slides):
     work = contacts.sticks.together
     if together:
         return least_part(work, c, k, 1.0)
-    flags = contacts.chosen[RESTING]
-    shared = contacts.sticks.vector[SHARED]
-    held = contacts.sticks.vector[LEFT]
-    limit = contacts.sticks.vector[LIMIT]
+    flags = contacts.chosen[arrays.RESTING]
+    shared = contacts.sticks.vector[arrays.SHARED]
+    held = contacts.sticks.vector[arrays.LEFT]
+    limit = contacts.sticks.vector[arrays.LIMIT]
     for i in range(k):
         shared[work.row[i]] = work.number[RAW, i]
         held[work.row[i]] = work.number[RAW, i]
@@ -209,23 +186,23 @@ def _agree(dyn, scratch, contacts, c, k, together, slides, beside, lam):
     lam (m,) begins with what presses joints at first.
     """
     work = contacts.sticks.together
-    normal = contacts.sticks.normal[FOUND]
+    normal = contacts.sticks.normal[arrays.FOUND]
     before = contacts.sticks.lam[0]
     part = 1.0
     for _ in range(PASSES):
         normal_forces(dyn.loads, scratch.ws, scratch.ws.jac, lam, normal)
         for i in range(c + k):
-            raw = contacts.sticks.vector[UNSHARED, i]
+            raw = contacts.sticks.vector[arrays.UNSHARED, i]
             work.number[RAW, i] = add_beside(contacts, i, raw) if beside else raw
         for i in range(c, c + k):
             row = work.row[i]
-            if contacts.place[row, KIND] == WAY:
-                work.number[OWN, i - c] = limit_of(dyn, contacts.place[row, FRICTION], normal)
+            if contacts.place[row, arrays.KIND] == arrays.WAY:
+                work.number[OWN, i - c] = limit_of(dyn, contacts.place[row, arrays.FRICTION], normal)
         part = _divide(contacts, c, k, together, slides)
         change = 0.0
         largest = 0.0
         for i in range(c + k):
-            change = max(change, abs(work.number[FORCE, i] + lam[contacts.place[work.row[i], ROW]]))
+            change = max(change, abs(work.number[FORCE, i] + lam[contacts.place[work.row[i], arrays.ROW]]))
             largest = max(largest, abs(work.number[FORCE, i]))
         _fill_multipliers(contacts, lam, before, c + k, beside)
         if part == PULLED or change <= (AGREED_TOGETHER if together else AGREED) * largest:
@@ -240,15 +217,15 @@ def carry(dyn, scratch, contacts, v, lam, asked):
     Returns the part s of their limits that they need, PULLED where contacts would have to pull; if it is ``asked`` for,
     under the friction of joints that slide at velocities v (3 nb,).
     """
-    flags = contacts.chosen[RESTING]
+    flags = contacts.chosen[arrays.RESTING]
     work = contacts.sticks.together
     before = contacts.sticks.lam[0]
-    together = contacts.clock[SHARING] == TOGETHER
+    together = contacts.clock[arrays.SHARING] == arrays.TOGETHER
     if together:
         _begin_together(dyn, scratch, contacts, flags)
     else:
         _begin_joints(dyn, scratch, contacts, flags)
-    c, k = list_rows(contacts, flags, STATIC)
+    c, k = list_rows(contacts, flags, arrays.STATIC)
     hold_rows(dyn, contacts)
     slides = not together and find_moved(dyn, contacts, flags)
     _fill(contacts, lam, c + k)
@@ -259,7 +236,7 @@ def carry(dyn, scratch, contacts, v, lam, asked):
         return part
     for i in range(c + k):
         if work.held[i] != 0:
-            note_beside(dyn, scratch, contacts, i, contacts.place[work.row[i], ROW])
+            note_beside(dyn, scratch, contacts, i, contacts.place[work.row[i], arrays.ROW])
     find_changes(contacts, work.compliance, work.held, c + k)
     other = contacts.sticks.lam[1]
     for r in range(lam.shape[0]):
@@ -276,7 +253,7 @@ def divide_together(contacts, flags, force, limit, coefficient):
     for i in range(c + k):
         work.held[i] = 1
         work.number[RAW, i] = force[work.row[i]]
-        if i >= c and contacts.place[work.row[i], KIND] == WAY:
+        if i >= c and contacts.place[work.row[i], arrays.KIND] == arrays.WAY:
             work.number[OWN, i - c] = limit[work.row[i]]
         for j in range(c + k):
             work.compliance[i, j] = pressed[work.row[i], work.row[j]]
@@ -288,39 +265,47 @@ def divide_together(contacts, flags, force, limit, coefficient):
 @lazy(None)
 def read_ways(dyn, scratch, contacts, y, forces):
     """Fill vector[VALUE] of ways at a state y (2, 3 nb) at which contacts.lam are the multipliers, if ``forces``."""
-    normal = contacts.sticks.normal[FOUND]
+    normal = contacts.sticks.normal[arrays.FOUND]
     resting = -1
-    sharing = contacts.clock[SHARING]
+    sharing = contacts.clock[arrays.SHARING]
     if forces:
         normal_forces(dyn.loads, scratch.ws, scratch.ws.jac, contacts.lam, normal)
     for k in range(contacts.place.shape[0]):
-        if contacts.place[k, KIND] == SLIDE and sharing == TOGETHER and contacts.number[k, CLOSED] > 0.0:
-            contacts.vector[VALUE, k] = contacts.clock[LOAD]
-        if contacts.place[k, KIND] != WAY:
+        if (
+            contacts.place[k, arrays.KIND] == arrays.SLIDE
+            and sharing == arrays.TOGETHER
+            and contacts.number[k, arrays.CLOSED] > 0.0
+        ):
+            contacts.vector[arrays.VALUE, k] = contacts.clock[arrays.LOAD]
+        if contacts.place[k, arrays.KIND] != arrays.WAY:
             continue
-        row = contacts.place[k, ROW]
+        row = contacts.place[k, arrays.ROW]
         if not holds(dyn, contacts, k):
-            contacts.vector[VALUE, k] = contacts.clock[LOAD]
+            contacts.vector[arrays.VALUE, k] = contacts.clock[arrays.LOAD]
             continue
-        if contacts.number[k, CLOSED] == 0.0:
-            contacts.vector[VALUE, k] = contacts.number[k, SIGN] * along(dyn, scratch, row, y[1])
+        if contacts.number[k, arrays.CLOSED] == 0.0:
+            contacts.vector[arrays.VALUE, k] = contacts.number[k, arrays.SIGN] * along(dyn, scratch, row, y[1])
             continue
-        contacts.vector[VALUE, k] = contacts.clock[LOAD]
-        if forces and sharing == APART:
-            limit = limit_of(dyn, contacts.place[k, FRICTION], normal)
-            contacts.vector[VALUE, k] = limit - abs(contacts.lam[row])
+        contacts.vector[arrays.VALUE, k] = contacts.clock[arrays.LOAD]
+        if forces and sharing == arrays.APART:
+            limit = limit_of(dyn, contacts.place[k, arrays.FRICTION], normal)
+            contacts.vector[arrays.VALUE, k] = limit - abs(contacts.lam[row])
         if resting < 0:
             resting = k
-    if forces and sharing != APART:
+    if forces and sharing != arrays.APART:
         part = carry(dyn, scratch, contacts, y[1], contacts.lam, True)
         for k in range(contacts.place.shape[0]):
-            if resting < 0 and contacts.place[k, KIND] == SLIDE and contacts.number[k, CLOSED] > 0.0:
+            if (
+                resting < 0
+                and contacts.place[k, arrays.KIND] == arrays.SLIDE
+                and contacts.number[k, arrays.CLOSED] > 0.0
+            ):
                 resting = k
-            if k < gaps_of(contacts) and contacts.number[k, CLOSED] > 0.0:
-                push = -contacts.lam[contacts.place[k, ROW]]
-                pulls = part == PULLED and push < ROUNDING * contacts.clock[LOAD]
-                contacts.vector[VALUE, k] = -contacts.clock[LOAD] if pulls else push
-        contacts.vector[VALUE, resting] = (1.0 - min(part, 2.0)) * contacts.clock[LOAD]
+            if k < gaps_of(contacts) and contacts.number[k, arrays.CLOSED] > 0.0:
+                push = -contacts.lam[contacts.place[k, arrays.ROW]]
+                pulls = part == PULLED and push < ROUNDING * contacts.clock[arrays.LOAD]
+                contacts.vector[arrays.VALUE, k] = -contacts.clock[arrays.LOAD] if pulls else push
+        contacts.vector[arrays.VALUE, resting] = (1.0 - min(part, 2.0)) * contacts.clock[arrays.LOAD]
 
 
 @lazy(None)
@@ -336,7 +321,7 @@ def share_here(dyn, scratch, contacts, state):
     """Put the multipliers of a state whose derivative is valid in contacts.lam, divided among what is at rest."""
     for r in range(state.lam.shape[0]):
         contacts.lam[r] = state.lam[r]
-    if contacts.clock[SHARING] != APART:
+    if contacts.clock[arrays.SHARING] != arrays.APART:
         share_state(dyn, scratch, contacts, state)
 
 

@@ -17,22 +17,7 @@ from mbsd.dynamics.integrators.dop853.dense import interpolant, interpolate
 from mbsd.dynamics.integrators.root_search import narrowed, next_part
 from mbsd.dynamics.integrators.step_size import allowed
 from mbsd.dynamics.state import EVALUATIONS, TIME
-from mbsd.equations.interactions.switching import (
-    BEFORE,
-    BEYOND,
-    CUTS,
-    FREE,
-    HELD,
-    HERE,
-    KEPT,
-    LOOSE,
-    RATE,
-    ROUGH,
-    SIZE,
-    TIGHT,
-    VALUE,
-    farthest,
-)
+from mbsd.equations.interactions import switching
 
 LANDED = 16
 """Row of the stages for the derivative right after a switch."""
@@ -58,9 +43,9 @@ REACH = 6.0
 @inlined
 def nearness(switch, settings):
     """Return how far (m) beyond a switch the next step may go."""
-    if switch[0, CUTS] == 1.0:
-        return max(TIGHT, WIDE * settings.relative) * switch[0, SIZE]
-    return TIGHT * switch[0, SIZE]
+    if switch[0, switching.CUTS] == 1.0:
+        return max(switching.TIGHT, WIDE * settings.relative) * switch[0, switching.SIZE]
+    return switching.TIGHT * switch[0, switching.SIZE]
 
 
 @inlined
@@ -106,8 +91,8 @@ def step_after(dyn, scratch, state, settings, t):
     wanted = min(wanted, 2.0 * h)
     rough = 0.0
     for row in range(1, switch.shape[0]):
-        if switch[row, LOOSE] == 2.0 and switch[row, VALUE] > 0.0:
-            rough = max(rough, switch[row, ROUGH])
+        if switch[row, switching.LOOSE] == 2.0 and switch[row, switching.VALUE] > 0.0:
+            rough = max(rough, switch[row, switching.ROUGH])
     if rough > 0.0 and bend > 0.0:
         wanted = min(wanted, h * (UNSEEN / (math.sqrt(bend) * h)) ** (1.0 / (rough + 1.0)))
     return min(wanted, settings.longest)
@@ -119,21 +104,21 @@ def _land(dyn, scratch, state, settings, reached, end):
     switch = dyn.loads.switch
     trial = scratch.state
     k = scratch.stages
-    tight = TIGHT * switch[0, SIZE]
+    tight = switching.TIGHT * switch[0, switching.SIZE]
     for row in range(1, switch.shape[0]):
-        side = switch[row, KEPT]
-        value = switch[row, VALUE]
-        switch[row, BEFORE] = side
+        side = switch[row, switching.KEPT]
+        value = switch[row, switching.VALUE]
+        switch[row, switching.BEFORE] = side
         if side != 0.0 and -side * value >= min(end, 0.0):
-            switch[row, LOOSE] = 2.0
-        switch[row, KEPT] = 0.0
-        if switch[row, LOOSE] < 2.0 and abs(value) > tight:
-            switch[row, KEPT] = math.copysign(1.0, value)
-    switch[0, HELD] = 1.0
-    switch[0, RATE] = step_after(dyn, scratch, state, settings, reached)
-    switch[0, HELD] = 0.0
+            switch[row, switching.LOOSE] = 2.0
+        switch[row, switching.KEPT] = 0.0
+        if switch[row, switching.LOOSE] < 2.0 and abs(value) > tight:
+            switch[row, switching.KEPT] = math.copysign(1.0, value)
+    switch[0, switching.HELD] = 1.0
+    switch[0, switching.RATE] = step_after(dyn, scratch, state, settings, reached)
+    switch[0, switching.HELD] = 0.0
     for row in range(1, switch.shape[0]):
-        switch[row, KEPT] = switch[row, BEFORE]
+        switch[row, switching.KEPT] = switch[row, switching.BEFORE]
     derivative(dyn, scratch, reached, trial, k[LANDED], scratch.multipliers)
     state.count[EVALUATIONS] += 1
 
@@ -147,7 +132,7 @@ def _return_to_end(dyn, scratch, state, reached):
             trial[row, column] = state.y[row, column] + scratch.dense[0, row, column]
     derivative(dyn, scratch, reached, trial, scratch.stages[LANDED], scratch.multipliers)
     state.count[EVALUATIONS] += 1
-    dyn.loads.switch[0, CUTS] = 0.0
+    dyn.loads.switch[0, switching.CUTS] = 0.0
 
 
 @lazy(float)
@@ -163,38 +148,38 @@ def crossing(dyn, scratch, state, settings, h, reached, work):
     t = state.clock[TIME]
     if h < settings.smallest:
         return 1.0
-    end = farthest(switch, VALUE)
-    first = switch[0, BEYOND]
-    cuts = switch[0, CUTS]
+    end = switching.farthest(switch, switching.VALUE)
+    first = switch[0, switching.BEYOND]
+    cuts = switch[0, switching.CUTS]
     if cuts > 0.0 and first == math.inf:
-        if end < -max(TIGHT, SHORT * settings.relative) * switch[0, SIZE]:
+        if end < -max(switching.TIGHT, SHORT * settings.relative) * switch[0, switching.SIZE]:
             return 1.0
-        switch[0, HELD] = 0.0
+        switch[0, switching.HELD] = 0.0
         scratch.power[LANDED] = derivative(dyn, scratch, reached, trial, k[LANDED], scratch.multipliers)
         state.count[EVALUATIONS] += 1
         jump = 0.0
         for c in range(3, n3):
             jump = max(jump, abs(k[LANDED, 1, c] - k[12, 1, c]) / allowed(settings, state.y, trial, 1, c))
-        if end <= 0.0 or jump * end <= MATTERS * switch[0, RATE]:
+        if end <= 0.0 or jump * end <= MATTERS * switch[0, switching.RATE]:
             _land(dyn, scratch, state, settings, reached, end)
             return 2.0
         first = reached
     if cuts >= MOST_CUTS:
-        switch[0, FREE] = 1.0
-        switch[0, CUTS] = 0.0
+        switch[0, switching.FREE] = 1.0
+        switch[0, switching.CUTS] = 0.0
         return WITHOUT
-    switch[0, CUTS] = cuts + 1.0
+    switch[0, switching.CUTS] = cuts + 1.0
     aim = 0.5 * nearness(switch, settings)
     if end > 0.0:
         aim = min(aim, 0.5 * end)
-    switch[0, HELD] = 1.0
+    switch[0, switching.HELD] = 1.0
     interpolant(dyn, scratch, state, h, work)
     state.count[EVALUATIONS] += 3
     if scratch.dense_work[3] != scratch.dense_work[3]:
         return UNCLEAR_STEP
     # between a and b lies the switch, c is the place before; Chandrupatla 1997, Adv. Eng. Softw. 28, 145
     a = 0.0
-    fa = farthest(switch, HERE) - aim
+    fa = switching.farthest(switch, switching.HERE) - aim
     b = 1.0
     fb = end - aim
     looking = first < reached
@@ -211,7 +196,7 @@ def crossing(dyn, scratch, state, settings, h, reached, work):
         state.count[EVALUATIONS] += 1
         if power != power:
             return UNCLEAR_STEP
-        f = farthest(switch, VALUE) - aim
+        f = switching.farthest(switch, switching.VALUE) - aim
         if looking and not f > 0.0 and not fb > 0.0:  # a stage alone was beyond, not the motion
             _return_to_end(dyn, scratch, state, reached)
             return 1.0
@@ -224,9 +209,9 @@ def crossing(dyn, scratch, state, settings, h, reached, work):
             landing = a if fa > 0.0 else b
             break
         part = min(max(next_part(a, fa, b, fb, c, fc), 1e-9), 1.0 - 1e-9)
-    switch[0, RATE] = abs((fa - fc) / ((a - c) * h))
+    switch[0, switching.RATE] = abs((fa - fc) / ((a - c) * h))
     if not 0.0 < landing < 1.0 or landing * h < max(settings.smallest, ROUNDING * abs(t)):
-        switch[0, FREE] = 1.0
-        switch[0, CUTS] = 0.0
+        switch[0, switching.FREE] = 1.0
+        switch[0, switching.CUTS] = 0.0
         return WITHOUT
     return landing

@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import inlined, shared
+from mbsd.dynamics import state as run_state
 from mbsd.dynamics.formulation import accelerate, begin_run, derivative, project, rates, record_here, settle
 from mbsd.dynamics.integrators.dop853.crossing import LANDED, crossing, nearness
 from mbsd.dynamics.integrators.dop853.dense import interpolant, write_outputs
@@ -23,38 +24,7 @@ from mbsd.dynamics.integrators.dop853.sums import sum_stages, sum_step
 from mbsd.dynamics.integrators.dop853.tableau import B, C
 from mbsd.dynamics.integrators.kind import Integrator, register
 from mbsd.dynamics.integrators.step_size import first_step
-from mbsd.dynamics.state import (
-    ACCEPTED,
-    CHOOSE,
-    ERROR,
-    EVALUATIONS,
-    NEXT,
-    NOT_FINITE,
-    PAUSED,
-    POWER,
-    REACHED,
-    REJECTED,
-    STARTED,
-    STEP,
-    STEP_TOO_SMALL,
-    TIME,
-    UNCLEAR,
-    WORK,
-)
-from mbsd.equations.interactions.switching import (
-    BEYOND,
-    CUTS,
-    FREE,
-    HELD,
-    RATE,
-    REMEMBERS,
-    SWITCHING,
-    accept,
-    begin_sides,
-    hold,
-    note_begin,
-    note_end,
-)
+from mbsd.equations.interactions import switching
 
 STAGES = 17
 EXPONENT = 0.125
@@ -87,9 +57,9 @@ def take_state(state, scratch, reached, work):
         for c in range(3, state.y.shape[1]):
             state.y[part, c] = scratch.state[part, c]
             scratch.stages[0, part, c] = state.dy[part, c]
-    state.clock[TIME] = reached
-    state.clock[WORK] += work
-    state.clock[POWER] = scratch.power[12]
+    state.clock[run_state.TIME] = reached
+    state.clock[run_state.WORK] += work
+    state.clock[run_state.POWER] = scratch.power[12]
     scratch.power[0] = scratch.power[12]
 
 
@@ -99,35 +69,38 @@ def choose_step(state, settings, h, error, rejected, last):
     growth = 10.0
     if error > 0.0:
         growth = math.log(error)
-        before = state.clock[ERROR] if state.clock[ERROR] < 0.0 else growth
-        state.clock[ERROR] = max(growth, SMALL)
+        before = state.clock[run_state.ERROR] if state.clock[run_state.ERROR] < 0.0 else growth
+        state.clock[run_state.ERROR] = max(growth, SMALL)
         growth = min(10.0, SAFETY * math.exp(BETA * before - (EXPONENT - 0.2 * BETA) * growth))
     if rejected:
         growth = min(growth, 1.0)
     if not last or growth < 1.0:
-        state.clock[STEP] = min(h * growth, settings.longest)
+        state.clock[run_state.STEP] = min(h * growth, settings.longest)
 
 
 @inlined
-def start(dyn, scratch, state, out, settings, switching):
+def start(dyn, scratch, state, out, settings, is_switching):
     """Evaluate the state at a start or restart, choose a first step, and write the outputs that stand at its time."""
     y = state.y
     k = scratch.stages
     switch = dyn.loads.switch
-    begin_sides(switch, state.clock[TIME], state.count[STARTED] != 0)
+    switching.begin_sides(switch, state.clock[run_state.TIME], state.count[run_state.STARTED] != 0)
     begin_run(dyn, scratch, state)
-    if switching and switch[0, REMEMBERS] > 0.0 and switch[0, FREE] > 0.0:
-        derivative(dyn, scratch, state.clock[TIME], y, k[LANDED], scratch.multipliers)
-        state.count[EVALUATIONS] += 1
-        note_begin(switch)
-    if state.clock[STEP] == 0.0:
-        state.clock[STEP] = first_step(dyn, scratch, state, settings, 0.125)
-    while state.count[NEXT] < out.t.shape[0] and out.t[state.count[NEXT]] <= state.clock[TIME]:
+    if is_switching and switch[0, switching.REMEMBERS] > 0.0 and switch[0, switching.FREE] > 0.0:
+        derivative(dyn, scratch, state.clock[run_state.TIME], y, k[LANDED], scratch.multipliers)
+        state.count[run_state.EVALUATIONS] += 1
+        switching.note_begin(switch)
+    if state.clock[run_state.STEP] == 0.0:
+        state.clock[run_state.STEP] = first_step(dyn, scratch, state, settings, 0.125)
+    while (
+        state.count[run_state.NEXT] < out.t.shape[0]
+        and out.t[state.count[run_state.NEXT]] <= state.clock[run_state.TIME]
+    ):
         record_here(dyn, scratch, state, out)
     for c in range(3, y.shape[1]):
         k[0, 0, c] = state.dy[0, c]
         k[0, 1, c] = state.dy[1, c]
-    scratch.power[0] = state.clock[POWER]
+    scratch.power[0] = state.clock[run_state.POWER]
 
 
 @inlined
@@ -158,7 +131,7 @@ def stages(dyn, scratch, state, settings, t, h, reached):
                 shorter = 0.5
                 break
         rates(dyn, trial[0], trial[1], k[s, 0])
-        state.count[EVALUATIONS] += 1
+        state.count[run_state.EVALUATIONS] += 1
         at = t + C[s] * h if s < 12 else reached
         scratch.power[s] = accelerate(dyn, scratch, at, trial, k[s, 1], scratch.multipliers)
         if scratch.power[s] != scratch.power[s]:
@@ -186,89 +159,82 @@ def outputs_passed(dyn, scratch, state, out, h, reached):
 def advance(dyn, scratch, state, out, settings, end, max_steps):
     """Go on to ``end`` (s), ``max_steps`` accepted steps at most, writing the outputs passed. Returns a status."""
     switch = dyn.loads.switch
-    switching = switch[0, SWITCHING] > 0.0
-    start(dyn, scratch, state, out, settings, switching)
+    is_switching = switch[0, switching.SWITCHING] > 0.0
+    start(dyn, scratch, state, out, settings, is_switching)
     accepted = 0
     rejected = False
-    while state.clock[TIME] < end:
+    while state.clock[run_state.TIME] < end:
         if accepted == max_steps:
-            return PAUSED
-        t = state.clock[TIME]
-        h = min(state.clock[STEP], settings.longest)
+            return run_state.PAUSED
+        t = state.clock[run_state.TIME]
+        h = min(state.clock[run_state.STEP], settings.longest)
         last = t + h >= end
         if last:
             h = end - t
         elif h < settings.smallest:
-            return STEP_TOO_SMALL
+            return run_state.STEP_TOO_SMALL
         reached = end if last else t + h
-        if switching:
-            hold(switch, nearness(switch, settings))
+        if is_switching:
+            switching.hold(switch, nearness(switch, settings))
         shorter, error, work = stages(dyn, scratch, state, settings, t, h, reached)
         landed = False
-        if switching:
-            switch[0, HELD] = 0.0
-            if shorter == 1.0 and (switch[0, BEYOND] < math.inf or switch[0, CUTS] > 0.0):
+        if is_switching:
+            switch[0, switching.HELD] = 0.0
+            if shorter == 1.0 and (switch[0, switching.BEYOND] < math.inf or switch[0, switching.CUTS] > 0.0):
                 shorter = crossing(dyn, scratch, state, settings, h, reached, work)
-                switch[0, HELD] = 0.0
+                switch[0, switching.HELD] = 0.0
             landed = shorter > 1.0
-            note_end(switch)
+            switching.note_end(switch)
         margin = scratch.report[0]
         fresh = True
         if shorter >= 1.0:
             take_rates(state, scratch)
-            following = state.count[NEXT]
+            following = state.count[run_state.NEXT]
             if following < out.t.shape[0] and out.t[following] < reached:
                 fresh = False
-                state.count[EVALUATIONS] += 3
-                if switching:
-                    switch[0, HELD] = 1.0
+                state.count[run_state.EVALUATIONS] += 3
+                if is_switching:
+                    switch[0, switching.HELD] = 1.0
                 interpolant(dyn, scratch, state, h, work)
-                switch[0, HELD] = 0.0
+                switch[0, switching.HELD] = 0.0
                 if scratch.dense_work[3] != scratch.dense_work[3]:
                     shorter = UNCLEAR_STEP
                 elif not outputs_passed(dyn, scratch, state, out, h, reached):
-                    return UNCLEAR
+                    return run_state.UNCLEAR
         if shorter < 1.0:
             if h < settings.smallest:
-                return NOT_FINITE
-            state.clock[STEP] = h * shorter
-            state.count[REJECTED] += 1
+                return run_state.NOT_FINITE
+            state.clock[run_state.STEP] = h * shorter
+            state.count[run_state.REJECTED] += 1
             rejected = True
             continue
-        if switching:
-            accept(switch, reached)
+        if is_switching:
+            switching.accept(switch, reached)
             if landed:
                 scratch.power[12] = scratch.power[LANDED]
                 for c in range(3, state.y.shape[1]):
                     state.dy[1, c] = scratch.stages[LANDED, 1, c]
         take_state(state, scratch, reached, work)
         scratch.report[0] = margin
-        following = state.count[NEXT]
+        following = state.count[run_state.NEXT]
         if following < out.t.shape[0] and out.t[following] <= reached:
             record_here(dyn, scratch, state, out)
             fresh = False
         other = settle(dyn, scratch, reached, scratch.state, fresh)
         choose_step(state, settings, h, error, rejected, last)
         if landed:
-            state.clock[STEP] = switch[0, RATE]
-            state.clock[ERROR] = 0.0
+            state.clock[run_state.STEP] = switch[0, switching.RATE]
+            state.clock[run_state.ERROR] = 0.0
         rejected = False
         accepted += 1
-        state.count[ACCEPTED] += 1
+        state.count[run_state.ACCEPTED] += 1
         if other:
-            return CHOOSE
-    return REACHED
+            return run_state.CHOOSE
+    return run_state.REACHED
 
 
 DOP853 = register(
     Integrator(
-        "dop853",
-        advance,
-        STAGES,
-        order=8,
-        fixed_step=False,
-        independent=True,
-        general=True,
-        meets_switches=True,
+        "dop853", advance, STAGES, order=8, fixed_step=False, independent=True, general=True, meets_switches=True
     )
 )

@@ -10,15 +10,7 @@ import math
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import internal, merged
 from mbsd.kinematics.groups.carried import COS, OMEGA, SIN, SOLVED, X, Y
-from mbsd.kinematics.groups.cases import (
-    AlongLaws,
-    PerCoordinate,
-    PoseAlone,
-    columns_of,
-    law_rate,
-    speed_of,
-    value_of,
-)
+from mbsd.kinematics.groups.cases import AlongLaws, PerCoordinate, PoseAlone, columns_of, law_rate, speed_of, value_of
 from mbsd.kinematics.groups.groups import COORDINATE, DRIVEN, FIRST, K1, K2, LAW, GroupKind, Link, Made, Places
 
 P1_X, P1_Y, PA_X, PA_Y, OFFSET, SENSE = range(6)

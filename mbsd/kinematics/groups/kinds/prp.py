@@ -10,19 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbsd.kinematics.groups.carried import (
-    OMEGA,
-    SINE,
-    SOLVED,
-    X,
-    Y,
-    carry_column,
-    hang_column,
-    place_by_point,
-    turn_as,
-    turned_x,
-    turned_y,
-)
+from mbsd.kinematics.groups import carried
 from mbsd.kinematics.groups.cases import columns_of, formula, note_change, reached, speed_of
 from mbsd.kinematics.groups.groups import FIRST, K1, K2, PRP, SECOND, GroupKind, Link, Made, Places
 
@@ -92,54 +80,54 @@ def solve_prp(case, e):
     k1 = bodies[K1]
     k2 = bodies[K2]
     columns = columns_of(case)
-    px = turned_x(body, k1, n[C1_X], n[C1_Y])
-    py = turned_y(body, k1, n[C1_X], n[C1_Y])
-    ex = turned_x(body, k1, n[E1_X], n[E1_Y])
-    ey = turned_y(body, k1, n[E1_X], n[E1_Y])
-    qx = turned_x(body, k2, n[C2_X], n[C2_Y])
-    qy = turned_y(body, k2, n[C2_X], n[C2_Y])
-    fx = turned_x(body, k2, n[E2_X], n[E2_Y])
-    fy = turned_y(body, k2, n[E2_X], n[E2_Y])
+    px = carried.turned_x(body, k1, n[C1_X], n[C1_Y])
+    py = carried.turned_y(body, k1, n[C1_X], n[C1_Y])
+    ex = carried.turned_x(body, k1, n[E1_X], n[E1_Y])
+    ey = carried.turned_y(body, k1, n[E1_X], n[E1_Y])
+    qx = carried.turned_x(body, k2, n[C2_X], n[C2_Y])
+    qy = carried.turned_y(body, k2, n[C2_X], n[C2_Y])
+    fx = carried.turned_x(body, k2, n[E2_X], n[E2_Y])
+    fy = carried.turned_y(body, k2, n[E2_X], n[E2_Y])
     sine = fx * ey - fy * ex
-    n[SINE] = sine * sine
+    n[carried.SINE] = sine * sine
     state = reached(case, n)
-    if state != SOLVED:
+    if state != carried.SOLVED:
         return state
     inverse = 1.0 / sine
-    dx = body[k2, X] + qx - body[k1, X] - px
-    dy = body[k2, Y] + qy - body[k1, Y] - py
+    dx = body[k2, carried.X] + qx - body[k1, carried.X] - px
+    dy = body[k2, carried.Y] + qy - body[k1, carried.Y] - py
     first = (fx * dy - fy * dx) * inverse
     second = (ex * dy - ey * dx) * inverse
     px += first * ex
     py += first * ey
     qx += second * fx
     qy += second * fy
-    turn_as(body, a, k1, n[COS_A], n[SIN_A])
-    tx = body[k1, X] + px
-    ty = body[k1, Y] + py
-    ax = place_by_point(body, a, tx, ty, n[CA_X], n[CA_Y], 0)
-    ay = place_by_point(body, a, tx, ty, n[CA_X], n[CA_Y], 1)
-    body[a, OMEGA] = body[k1, OMEGA]
+    carried.turn_as(body, a, k1, n[COS_A], n[SIN_A])
+    tx = body[k1, carried.X] + px
+    ty = body[k1, carried.Y] + py
+    ax = carried.place_by_point(body, a, tx, ty, n[CA_X], n[CA_Y], 0)
+    ay = carried.place_by_point(body, a, tx, ty, n[CA_X], n[CA_Y], 1)
+    body[a, carried.OMEGA] = body[k1, carried.OMEGA]
     bx = 0.0
     by = 0.0
     if b >= 0:
-        turn_as(body, b, k2, n[COS_B], n[SIN_B])
-        bx = place_by_point(body, b, tx, ty, n[CB_X], n[CB_Y], 0)
-        by = place_by_point(body, b, tx, ty, n[CB_X], n[CB_Y], 1)
-        body[b, OMEGA] = body[k2, OMEGA]
-    note_change(case, n, 2.0 * sine * (fx * ex + fy * ey) * (body[k1, OMEGA] - body[k2, OMEGA]))
+        carried.turn_as(body, b, k2, n[COS_B], n[SIN_B])
+        bx = carried.place_by_point(body, b, tx, ty, n[CB_X], n[CB_Y], 0)
+        by = carried.place_by_point(body, b, tx, ty, n[CB_X], n[CB_Y], 1)
+        body[b, carried.OMEGA] = body[k2, carried.OMEGA]
+    note_change(case, n, 2.0 * sine * (fx * ex + fy * ey) * (body[k1, carried.OMEGA] - body[k2, carried.OMEGA]))
     slip1 = 0.0
     slip2 = 0.0
     for j in range(columns + 1):
-        cx = carry_column(body, rate, columns, j, k1, px, py, 0)
-        cy = carry_column(body, rate, columns, j, k1, px, py, 1)
-        tx = carry_column(body, rate, columns, j, k2, qx, qy, 0)
-        ty = carry_column(body, rate, columns, j, k2, qx, qy, 1)
+        cx = carried.carry_column(body, rate, columns, j, k1, px, py, 0)
+        cy = carried.carry_column(body, rate, columns, j, k1, px, py, 1)
+        tx = carried.carry_column(body, rate, columns, j, k2, qx, qy, 0)
+        ty = carried.carry_column(body, rate, columns, j, k2, qx, qy, 1)
         if j == columns:
-            twice = 2.0 * body[k1, OMEGA] * slip1
+            twice = 2.0 * body[k1, carried.OMEGA] * slip1
             cx -= twice * ey
             cy += twice * ex
-            twice = 2.0 * body[k2, OMEGA] * slip2
+            twice = 2.0 * body[k2, carried.OMEGA] * slip2
             tx -= twice * fy
             ty += twice * fx
         dx = tx - cx
@@ -150,7 +138,7 @@ def solve_prp(case, e):
             slip2 += (ex * dy - ey * dx) * inverse * speed_of(case, j)
         gx = cx + along * ex
         gy = cy + along * ey
-        hang_column(body, rate, columns, j, a, gx, gy, rate[k1, 3 * j + 2], ax, ay)
+        carried.hang_column(body, rate, columns, j, a, gx, gy, rate[k1, 3 * j + 2], ax, ay)
         if b >= 0:
-            hang_column(body, rate, columns, j, b, gx, gy, rate[k2, 3 * j + 2], bx, by)
-    return SOLVED
+            carried.hang_column(body, rate, columns, j, b, gx, gy, rate[k2, 3 * j + 2], bx, by)
+    return carried.SOLVED

@@ -12,21 +12,7 @@ import math
 
 import numpy as np
 
-from mbsd.kinematics.groups.carried import (
-    COS,
-    DOUBTED,
-    OMEGA,
-    SIN,
-    SINE,
-    SOLVED,
-    X,
-    Y,
-    carry_column,
-    hang_column,
-    place_by_point,
-    turned_x,
-    turned_y,
-)
+from mbsd.kinematics.groups import carried
 from mbsd.kinematics.groups.cases import (
     branch_of,
     columns_of,
@@ -74,55 +60,55 @@ def solve_rod(case, e):
     k2 = bodies[K2]
     law = bodies[LAW]
     columns = columns_of(case)
-    px = turned_x(body, k1, n[P1_X], n[P1_Y])
-    py = turned_y(body, k1, n[P1_X], n[P1_Y])
-    qx = turned_x(body, k2, n[Q2_X], n[Q2_Y])
-    qy = turned_y(body, k2, n[Q2_X], n[Q2_Y])
-    cx = body[k1, X] + px
-    cy = body[k1, Y] + py
-    dx = body[k2, X] + qx - cx
-    dy = body[k2, Y] + qy - cy
+    px = carried.turned_x(body, k1, n[P1_X], n[P1_Y])
+    py = carried.turned_y(body, k1, n[P1_X], n[P1_Y])
+    qx = carried.turned_x(body, k2, n[Q2_X], n[Q2_Y])
+    qy = carried.turned_y(body, k2, n[Q2_X], n[Q2_Y])
+    cx = body[k1, carried.X] + px
+    cy = body[k1, carried.Y] + py
+    dx = body[k2, carried.X] + qx - cx
+    dy = body[k2, carried.Y] + qy - cy
     rod = n[LENGTH] + value_of(case, e, law, -1)
     square = dx * dx + dy * dy
     half = 0.5 * (square + n[SQUARE] - rod * rod)
     left = n[SQUARE] * square - half * half
     scale = n[SQUARE] * rod * rod
-    n[SINE] = left / scale
+    n[carried.SINE] = left / scale
     state = reached(case, n)
-    if state != SOLVED:
+    if state != carried.SOLVED:
         return state
     cross = math.sqrt(left)
     sign = branch_of(case, n, a, n[SQUARE] * n[UA_X], n[SQUARE] * n[UA_Y], -dy, dx, cross)
     if sign == 0.0:
-        return DOUBTED
+        return carried.DOUBTED
     cross *= sign
     ux = (half * dx - cross * dy) / square
     uy = (half * dy + cross * dx) / square
     wx = ux - dx
     wy = uy - dy
-    body[a, COS] = ux * n[UA_X] + uy * n[UA_Y]
-    body[a, SIN] = uy * n[UA_X] - ux * n[UA_Y]
-    ax = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
-    ay = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
+    body[a, carried.COS] = ux * n[UA_X] + uy * n[UA_Y]
+    body[a, carried.SIN] = uy * n[UA_X] - ux * n[UA_Y]
+    ax = carried.place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
+    ay = carried.place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
     lever = 1.0 / (wy * ux - wx * uy)
     turning = 0.0
     past_x = 0.0
     past_y = 0.0
     for j in range(columns + 1):
-        cx = carry_column(body, rate, columns, j, k1, px, py, 0)
-        cy = carry_column(body, rate, columns, j, k1, px, py, 1)
-        fx = carry_column(body, rate, columns, j, k2, qx, qy, 0) - cx
-        fy = carry_column(body, rate, columns, j, k2, qx, qy, 1) - cy
+        cx = carried.carry_column(body, rate, columns, j, k1, px, py, 0)
+        cy = carried.carry_column(body, rate, columns, j, k1, px, py, 1)
+        fx = carried.carry_column(body, rate, columns, j, k2, qx, qy, 0) - cx
+        fy = carried.carry_column(body, rate, columns, j, k2, qx, qy, 1) - cy
         change = 0.0
         if j == columns:
-            body[a, OMEGA] = turning
+            body[a, carried.OMEGA] = turning
             growing = rod * law_rate(case, law, 1)
             approach = dx * past_x + dy * past_y
             note_change(
                 case,
                 n,
                 (2.0 * n[SQUARE] * approach - 2.0 * half * (approach - growing)) / scale
-                - 2.0 * n[SINE] * growing / (rod * rod),
+                - 2.0 * n[carried.SINE] * growing / (rod * rod),
             )
             past_x = -turning * uy - past_x
             past_y = turning * ux - past_y
@@ -137,5 +123,5 @@ def solve_rod(case, e):
             turning += omega * speed_of(case, j)
             past_x += fx * speed_of(case, j)
             past_y += fy * speed_of(case, j)
-        hang_column(body, rate, columns, j, a, cx, cy, omega, ax, ay)
-    return SOLVED
+        carried.hang_column(body, rate, columns, j, a, cx, cy, omega, ax, ay)
+    return carried.SOLVED

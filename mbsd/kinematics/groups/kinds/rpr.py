@@ -13,47 +13,9 @@ import math
 
 import numpy as np
 
-from mbsd.kinematics.groups.carried import (
-    COS,
-    DOUBTED,
-    MEETING,
-    OMEGA,
-    SIN,
-    SINE,
-    SOLVED,
-    X,
-    Y,
-    carry_column,
-    hang_column,
-    place_by_point,
-    turn_as,
-    turned_x,
-    turned_y,
-)
-from mbsd.kinematics.groups.cases import (
-    branch_of,
-    columns_of,
-    formula,
-    note_change,
-    reached,
-    speed_of,
-    too_short,
-)
-from mbsd.kinematics.groups.groups import (
-    FIRST,
-    K1,
-    K2,
-    RPR,
-    SECOND,
-    Bodies,
-    GroupKind,
-    Link,
-    Made,
-    Places,
-    Vector,
-    own_angle,
-    turned,
-)
+from mbsd.kinematics.groups import carried, groups
+from mbsd.kinematics.groups.cases import branch_of, columns_of, formula, note_change, reached, speed_of, too_short
+from mbsd.kinematics.groups.groups import Bodies, GroupKind, Link, Made, Places, Vector, own_angle, turned
 
 P1_X, P1_Y, PA_X, PA_Y, E_X, E_Y, OFFSET, Q2_X, Q2_Y, ANGLE, QB_X, QB_Y, BRANCH = range(13)
 """P on K1, P on A, e on A, offset of Q from it, Q on K2, angle of B against A, Q on B, sign of the root."""
@@ -97,7 +59,7 @@ def _group(
     numbers = [float(x) for x in (*at.pin(pin), *axis, offset, *q_on_k2, angle, *q_on_b)]
     reach = at.world(k2, q_on_k2) - at.world(a, numbers[PA_X:E_X])
     branch = math.copysign(1.0, float(np.dot(reach, at.along(a, axis))))
-    return RPR, bodies, 0, [*numbers, branch]
+    return groups.RPR, bodies, 0, [*numbers, branch]
 
 
 def _row(n: np.ndarray) -> list[np.ndarray]:
@@ -105,7 +67,7 @@ def _row(n: np.ndarray) -> list[np.ndarray]:
 
 
 KIND = GroupKind(
-    RPR,
+    groups.RPR,
     "RPR",
     _row,
     one=("RS",),
@@ -113,7 +75,7 @@ KIND = GroupKind(
     two=("RPR",),
     of_two=on_each_other,
     branch=BRANCH,
-    follows=((1, ANGLE, FIRST),),
+    follows=((1, ANGLE, groups.FIRST),),
     watched=1,
 )
 
@@ -125,62 +87,62 @@ def solve_rpr(case, e):
     n = case.number[e]
     body = case.body
     rate = case.rate
-    a = bodies[FIRST]
-    b = bodies[SECOND]
-    k1 = bodies[K1]
-    k2 = bodies[K2]
+    a = bodies[groups.FIRST]
+    b = bodies[groups.SECOND]
+    k1 = bodies[groups.K1]
+    k2 = bodies[groups.K2]
     columns = columns_of(case)
-    px = turned_x(body, k1, n[P1_X], n[P1_Y])
-    py = turned_y(body, k1, n[P1_X], n[P1_Y])
-    qx = turned_x(body, k2, n[Q2_X], n[Q2_Y])
-    qy = turned_y(body, k2, n[Q2_X], n[Q2_Y])
-    cx = body[k1, X] + px
-    cy = body[k1, Y] + py
-    tx = body[k2, X] + qx
-    ty = body[k2, Y] + qy
+    px = carried.turned_x(body, k1, n[P1_X], n[P1_Y])
+    py = carried.turned_y(body, k1, n[P1_X], n[P1_Y])
+    qx = carried.turned_x(body, k2, n[Q2_X], n[Q2_Y])
+    qy = carried.turned_y(body, k2, n[Q2_X], n[Q2_Y])
+    cx = body[k1, carried.X] + px
+    cy = body[k1, carried.Y] + py
+    tx = body[k2, carried.X] + qx
+    ty = body[k2, carried.Y] + qy
     dx = tx - cx
     dy = ty - cy
     square = dx * dx + dy * dy
     left = square - n[OFFSET] * n[OFFSET]
-    n[SINE] = left / square if square > 0.0 else 0.0
+    n[carried.SINE] = left / square if square > 0.0 else 0.0
     state = reached(case, n)
     if too_short(case, left):
-        state = min(state, MEETING)
-    if state != SOLVED:
+        state = min(state, carried.MEETING)
+    if state != carried.SOLVED:
         return state
     root = math.sqrt(left)
     sign = branch_of(case, n, a, n[E_X], n[E_Y], dx, dy, root)
     if sign == 0.0:
-        return DOUBTED
+        return carried.DOUBTED
     root *= sign
     # the axis and its normal in the group's frame: d = root e + offset e_perp
     inverse = 1.0 / square
     ex = (root * dx + n[OFFSET] * dy) * inverse
     ey = (root * dy - n[OFFSET] * dx) * inverse
-    body[a, COS] = ex * n[E_X] + ey * n[E_Y]
-    body[a, SIN] = ey * n[E_X] - ex * n[E_Y]
-    ax = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
-    ay = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
+    body[a, carried.COS] = ex * n[E_X] + ey * n[E_Y]
+    body[a, carried.SIN] = ey * n[E_X] - ex * n[E_Y]
+    ax = carried.place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
+    ay = carried.place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
     bx = 0.0
     by = 0.0
     if b >= 0:
-        turn_as(body, b, a, n[COS_B], n[SIN_B])
-        bx = place_by_point(body, b, tx, ty, n[QB_X], n[QB_Y], 0)
-        by = place_by_point(body, b, tx, ty, n[QB_X], n[QB_Y], 1)
+        carried.turn_as(body, b, a, n[COS_B], n[SIN_B])
+        bx = carried.place_by_point(body, b, tx, ty, n[QB_X], n[QB_Y], 0)
+        by = carried.place_by_point(body, b, tx, ty, n[QB_X], n[QB_Y], 1)
     inverse = 1.0 / root
     turning = 0.0
     sliding = 0.0
     for j in range(columns + 1):
-        cx = carry_column(body, rate, columns, j, k1, px, py, 0)
-        cy = carry_column(body, rate, columns, j, k1, px, py, 1)
-        tx = carry_column(body, rate, columns, j, k2, qx, qy, 0)
-        ty = carry_column(body, rate, columns, j, k2, qx, qy, 1)
+        cx = carried.carry_column(body, rate, columns, j, k1, px, py, 0)
+        cy = carried.carry_column(body, rate, columns, j, k1, px, py, 1)
+        tx = carried.carry_column(body, rate, columns, j, k2, qx, qy, 0)
+        ty = carried.carry_column(body, rate, columns, j, k2, qx, qy, 1)
         fx = tx - cx
         fy = ty - cy
         if j == columns:
-            body[a, OMEGA] = turning
+            body[a, carried.OMEGA] = turning
             if b >= 0:
-                body[b, OMEGA] = turning
+                body[b, carried.OMEGA] = turning
             note_change(case, n, 2.0 * n[OFFSET] * n[OFFSET] * sliding * root / (square * square))
             fx += turning * turning * dx + 2.0 * turning * sliding * ey
             fy += turning * turning * dy - 2.0 * turning * sliding * ex
@@ -188,7 +150,7 @@ def solve_rpr(case, e):
         if j < columns:
             turning += omega * speed_of(case, j)
             sliding += (dx * fx + dy * fy) * inverse * speed_of(case, j)
-        hang_column(body, rate, columns, j, a, cx, cy, omega, ax, ay)
+        carried.hang_column(body, rate, columns, j, a, cx, cy, omega, ax, ay)
         if b >= 0:
-            hang_column(body, rate, columns, j, b, tx, ty, omega, bx, by)
-    return SOLVED
+            carried.hang_column(body, rate, columns, j, b, tx, ty, omega, bx, by)
+    return carried.SOLVED

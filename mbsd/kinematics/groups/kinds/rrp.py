@@ -13,30 +13,8 @@ import math
 
 import numpy as np
 
-from mbsd.kinematics.groups.carried import (
-    COS,
-    DOUBTED,
-    OMEGA,
-    SIN,
-    SINE,
-    SOLVED,
-    X,
-    Y,
-    carry_column,
-    hang_column,
-    place_by_point,
-    turn_as,
-    turned_x,
-    turned_y,
-)
-from mbsd.kinematics.groups.cases import (
-    branch_of,
-    columns_of,
-    formula,
-    note_change,
-    reached,
-    speed_of,
-)
+from mbsd.kinematics.groups import carried
+from mbsd.kinematics.groups.cases import branch_of, columns_of, formula, note_change, reached, speed_of
 from mbsd.kinematics.groups.groups import FIRST, K1, K2, RRP, SECOND, Bodies, GroupKind, Link, Made, Places, line
 
 P1_X, P1_Y, PA_X, PA_Y, CA_X, CA_Y, C2_X, C2_Y, E_X, E_Y, ANGLE, CB_X, CB_Y, BRANCH = range(14)
@@ -100,57 +78,57 @@ def solve_rrp(case, e):
     k1 = bodies[K1]
     k2 = bodies[K2]
     columns = columns_of(case)
-    px = turned_x(body, k1, n[P1_X], n[P1_Y])
-    py = turned_y(body, k1, n[P1_X], n[P1_Y])
-    qx = turned_x(body, k2, n[C2_X], n[C2_Y])
-    qy = turned_y(body, k2, n[C2_X], n[C2_Y])
-    ex = turned_x(body, k2, n[E_X], n[E_Y])
-    ey = turned_y(body, k2, n[E_X], n[E_Y])
-    dx = body[k2, X] + qx - body[k1, X] - px
-    dy = body[k2, Y] + qy - body[k1, Y] - py
+    px = carried.turned_x(body, k1, n[P1_X], n[P1_Y])
+    py = carried.turned_y(body, k1, n[P1_X], n[P1_Y])
+    qx = carried.turned_x(body, k2, n[C2_X], n[C2_Y])
+    qy = carried.turned_y(body, k2, n[C2_X], n[C2_Y])
+    ex = carried.turned_x(body, k2, n[E_X], n[E_Y])
+    ey = carried.turned_y(body, k2, n[E_X], n[E_Y])
+    dx = body[k2, carried.X] + qx - body[k1, carried.X] - px
+    dy = body[k2, carried.Y] + qy - body[k1, carried.Y] - py
     along = dx * ex + dy * ey
     across = dx * ey - dy * ex
     left = n[SQUARE] - across * across
-    n[SINE] = left * n[PER_SQUARE]
+    n[carried.SINE] = left * n[PER_SQUARE]
     state = reached(case, n)
-    if state != SOLVED:
+    if state != carried.SOLVED:
         return state
     root = math.sqrt(left)
     sign = branch_of(case, n, a, n[SQUARE] * n[UA_X], n[SQUARE] * n[UA_Y], ex, ey, root)
     if sign == 0.0:
-        return DOUBTED
+        return carried.DOUBTED
     root *= sign
     slide = root - along
     sx = qx + slide * ex
     sy = qy + slide * ey
     ux = dx + slide * ex
     uy = dy + slide * ey
-    body[a, COS] = ux * n[UA_X] + uy * n[UA_Y]
-    body[a, SIN] = uy * n[UA_X] - ux * n[UA_Y]
-    cx = body[k1, X] + px
-    cy = body[k1, Y] + py
-    ax = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
-    ay = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
+    body[a, carried.COS] = ux * n[UA_X] + uy * n[UA_Y]
+    body[a, carried.SIN] = uy * n[UA_X] - ux * n[UA_Y]
+    cx = body[k1, carried.X] + px
+    cy = body[k1, carried.Y] + py
+    ax = carried.place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
+    ay = carried.place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
     bx = 0.0
     by = 0.0
     if b >= 0:
-        turn_as(body, b, k2, n[COS_B], n[SIN_B])
-        bx = place_by_point(body, b, body[k2, X] + sx, body[k2, Y] + sy, n[CB_X], n[CB_Y], 0)
-        by = place_by_point(body, b, body[k2, X] + sx, body[k2, Y] + sy, n[CB_X], n[CB_Y], 1)
-        body[b, OMEGA] = body[k2, OMEGA]
+        carried.turn_as(body, b, k2, n[COS_B], n[SIN_B])
+        bx = carried.place_by_point(body, b, body[k2, carried.X] + sx, body[k2, carried.Y] + sy, n[CB_X], n[CB_Y], 0)
+        by = carried.place_by_point(body, b, body[k2, carried.X] + sx, body[k2, carried.Y] + sy, n[CB_X], n[CB_Y], 1)
+        body[b, carried.OMEGA] = body[k2, carried.OMEGA]
     inverse = 1.0 / root
     turning = 0.0
     sliding = 0.0
     fx = 0.0
     fy = 0.0
     for j in range(columns + 1):
-        cx = carry_column(body, rate, columns, j, k1, px, py, 0)
-        cy = carry_column(body, rate, columns, j, k1, px, py, 1)
-        tx = carry_column(body, rate, columns, j, k2, sx, sy, 0)
-        ty = carry_column(body, rate, columns, j, k2, sx, sy, 1)
+        cx = carried.carry_column(body, rate, columns, j, k1, px, py, 0)
+        cy = carried.carry_column(body, rate, columns, j, k1, px, py, 1)
+        tx = carried.carry_column(body, rate, columns, j, k2, sx, sy, 0)
+        ty = carried.carry_column(body, rate, columns, j, k2, sx, sy, 1)
         if j == columns:
-            body[a, OMEGA] = turning
-            spin = body[k2, OMEGA]
+            body[a, carried.OMEGA] = turning
+            spin = body[k2, carried.OMEGA]
             note_change(case, n, -2.0 * across * (fx * ey - fy * ex + spin * root) * n[PER_SQUARE])
             tx -= 2.0 * spin * sliding * ey
             ty += 2.0 * spin * sliding * ex
@@ -164,7 +142,7 @@ def solve_rrp(case, e):
         if j < columns:
             turning += omega * speed_of(case, j)
             sliding += slip * speed_of(case, j)
-        hang_column(body, rate, columns, j, a, cx, cy, omega, ax, ay)
+        carried.hang_column(body, rate, columns, j, a, cx, cy, omega, ax, ay)
         if b >= 0:
-            hang_column(body, rate, columns, j, b, tx + slip * ex, ty + slip * ey, rate[k2, 3 * j + 2], bx, by)
-    return SOLVED
+            carried.hang_column(body, rate, columns, j, b, tx + slip * ex, ty + slip * ey, rate[k2, 3 * j + 2], bx, by)
+    return carried.SOLVED

@@ -16,26 +16,8 @@ import math
 import numpy as np
 
 from mbsd.compiling.jit import merged
-from mbsd.kinematics.groups.carried import (
-    COS,
-    DOUBTED,
-    OMEGA,
-    SIN,
-    SINE,
-    SOLVED,
-    X,
-    Y,
-    place_by_point,
-    turned_x,
-    turned_y,
-)
-from mbsd.kinematics.groups.cases import (
-    branch_of,
-    columns_of,
-    note_change,
-    reached,
-    speed_of,
-)
+from mbsd.kinematics.groups import carried
+from mbsd.kinematics.groups.cases import branch_of, columns_of, note_change, reached, speed_of
 from mbsd.kinematics.groups.groups import FIRST, K1, K2, RRR, SECOND, GroupKind, Link, Made, Places, line
 
 P1_X, P1_Y, PA_X, PA_Y, CA_X, CA_Y, Q2_X, Q2_Y, QB_X, QB_Y, CB_X, CB_Y, BRANCH = range(13)
@@ -47,12 +29,7 @@ SQUARE, DIFFERENCE, PER_SQUARES = range(12, 15)
 
 def two_pinned(at: Places, a: int, b: int, outer_a: Link, inner: Link, outer_b: Link) -> Made:
     """Return two bodies pinned to known ones and to each other."""
-    numbers = [
-        *at.pin(outer_a),
-        *at.arm(inner.here),
-        *at.pin(outer_b),
-        *at.arm(inner.there),
-    ]
+    numbers = [*at.pin(outer_a), *at.arm(inner.here), *at.pin(outer_b), *at.arm(inner.there)]
     p, q = at.world(a, numbers[PA_X:CA_X]), at.world(b, numbers[QB_X:CB_X])
     branch = at.side_of(p, q, at.world(a, numbers[CA_X:Q2_X]))
     return RRR, (a, b, outer_a.other, outer_b.other), 0, [*numbers, branch]
@@ -81,28 +58,28 @@ def solve_rrr(case, e):
     k1 = bodies[K1]
     k2 = bodies[K2]
     columns = columns_of(case)
-    px = turned_x(body, k1, n[P1_X], n[P1_Y])
-    py = turned_y(body, k1, n[P1_X], n[P1_Y])
-    qx = turned_x(body, k2, n[Q2_X], n[Q2_Y])
-    qy = turned_y(body, k2, n[Q2_X], n[Q2_Y])
-    cx = body[k1, X] + px
-    cy = body[k1, Y] + py
-    ex = body[k2, X] + qx
-    ey = body[k2, Y] + qy
+    px = carried.turned_x(body, k1, n[P1_X], n[P1_Y])
+    py = carried.turned_y(body, k1, n[P1_X], n[P1_Y])
+    qx = carried.turned_x(body, k2, n[Q2_X], n[Q2_Y])
+    qy = carried.turned_y(body, k2, n[Q2_X], n[Q2_Y])
+    cx = body[k1, carried.X] + px
+    cy = body[k1, carried.Y] + py
+    ex = body[k2, carried.X] + qx
+    ey = body[k2, carried.Y] + qy
     dx = ex - cx
     dy = ey - cy
     square = dx * dx + dy * dy
     half = 0.5 * (square + n[DIFFERENCE])
     cross = n[SQUARE] * square - half * half
-    n[SINE] = cross * n[PER_SQUARES]
+    n[carried.SINE] = cross * n[PER_SQUARES]
     state = reached(case, n)
-    if state != SOLVED:
+    if state != carried.SOLVED:
         return state
     inverse = 1.0 / square
     cross = math.sqrt(cross)
     sign = branch_of(case, n, a, n[SQUARE] * n[UA_X], n[SQUARE] * n[UA_Y], -dy, dx, cross)
     if sign == 0.0:
-        return DOUBTED
+        return carried.DOUBTED
     cross *= sign
     det = 1.0 / cross
     along = half * inverse
@@ -111,18 +88,18 @@ def solve_rrr(case, e):
     uy = along * dy + cross * dx
     wx = ux - dx
     wy = uy - dy
-    body[a, COS] = ux * n[UA_X] + uy * n[UA_Y]
-    body[a, SIN] = uy * n[UA_X] - ux * n[UA_Y]
-    ax = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
-    ay = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
-    body[b, COS] = wx * n[WB_X] + wy * n[WB_Y]
-    body[b, SIN] = wy * n[WB_X] - wx * n[WB_Y]
-    bx = place_by_point(body, b, ex, ey, n[QB_X], n[QB_Y], 0)
-    by = place_by_point(body, b, ex, ey, n[QB_X], n[QB_Y], 1)
+    body[a, carried.COS] = ux * n[UA_X] + uy * n[UA_Y]
+    body[a, carried.SIN] = uy * n[UA_X] - ux * n[UA_Y]
+    ax = carried.place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
+    ay = carried.place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
+    body[b, carried.COS] = wx * n[WB_X] + wy * n[WB_Y]
+    body[b, carried.SIN] = wy * n[WB_X] - wx * n[WB_Y]
+    bx = carried.place_by_point(body, b, ex, ey, n[QB_X], n[QB_Y], 0)
+    by = carried.place_by_point(body, b, ex, ey, n[QB_X], n[QB_Y], 1)
     if columns >= 0:
         fx, fy = rates_of_rrr(case, bodies, columns, (px, py, qx, qy), (ax, ay, bx, by), (ux, uy, wx, wy, det))
         note_change(case, n, 2.0 * (n[SQUARE] - half) * (dx * fx + dy * fy) * n[PER_SQUARES])
-    return SOLVED
+    return carried.SOLVED
 
 
 @merged
@@ -166,17 +143,17 @@ def rates_of_rrr(case, bodies, columns, places, arms, links):
         rate[b, at + 1] = ey - omega * bx
         rate[b, at + 2] = omega
     parting = fx, fy
-    body[a, OMEGA] = turning_a
-    body[b, OMEGA] = turning_b
+    body[a, carried.OMEGA] = turning_a
+    body[b, carried.OMEGA] = turning_b
     turning_a *= turning_a
     turning_b *= turning_b
     at = 3 * columns
     omega = rate[k1, at + 2]
-    square = body[k1, OMEGA] * body[k1, OMEGA]
+    square = body[k1, carried.OMEGA] * body[k1, carried.OMEGA]
     cx = rate[k1, at] - omega * py - square * px
     cy = rate[k1, at + 1] + omega * px - square * py
     omega = rate[k2, at + 2]
-    square = body[k2, OMEGA] * body[k2, OMEGA]
+    square = body[k2, carried.OMEGA] * body[k2, carried.OMEGA]
     ex = rate[k2, at] - omega * qy - square * qx
     ey = rate[k2, at + 1] + omega * qx - square * qy
     fx = ex - cx + turning_a * ux - turning_b * wx

@@ -9,18 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbsd.kinematics.groups.carried import (
-    OMEGA,
-    SOLVED,
-    X,
-    Y,
-    carry_column,
-    hang_column,
-    place_by_point,
-    turn_as,
-    turned_x,
-    turned_y,
-)
+from mbsd.kinematics.groups import carried
 from mbsd.kinematics.groups.cases import columns_of, formula, law_rate, speed_of, value_of
 from mbsd.kinematics.groups.groups import COORDINATE, FIRST, K1, LAW, SLIDE, GroupKind, Link, Made, Places, turned
 
@@ -67,21 +56,21 @@ def solve_slide(case, e):
     law = bodies[LAW]
     column = bodies[COORDINATE]
     columns = columns_of(case)
-    gx = turned_x(body, k1, n[G_X], n[G_Y])
-    gy = turned_y(body, k1, n[G_X], n[G_Y])
+    gx = carried.turned_x(body, k1, n[G_X], n[G_Y])
+    gy = carried.turned_y(body, k1, n[G_X], n[G_Y])
     way = value_of(case, e, law, column)
-    px = turned_x(body, k1, n[S1_X], n[S1_Y]) + way * gx
-    py = turned_y(body, k1, n[S1_X], n[S1_Y]) + way * gy
-    turn_as(body, a, k1, n[COS_A], n[SIN_A])
-    cx = body[k1, X] + px
-    cy = body[k1, Y] + py
-    ax = place_by_point(body, a, cx, cy, n[SA_X], n[SA_Y], 0)
-    ay = place_by_point(body, a, cx, cy, n[SA_X], n[SA_Y], 1)
-    body[a, OMEGA] = body[k1, OMEGA]
+    px = carried.turned_x(body, k1, n[S1_X], n[S1_Y]) + way * gx
+    py = carried.turned_y(body, k1, n[S1_X], n[S1_Y]) + way * gy
+    carried.turn_as(body, a, k1, n[COS_A], n[SIN_A])
+    cx = body[k1, carried.X] + px
+    cy = body[k1, carried.Y] + py
+    ax = carried.place_by_point(body, a, cx, cy, n[SA_X], n[SA_Y], 0)
+    ay = carried.place_by_point(body, a, cx, cy, n[SA_X], n[SA_Y], 1)
+    body[a, carried.OMEGA] = body[k1, carried.OMEGA]
     sliding = 0.0
     for j in range(columns + 1):
-        cx = carry_column(body, rate, columns, j, k1, px, py, 0)
-        cy = carry_column(body, rate, columns, j, k1, px, py, 1)
+        cx = carried.carry_column(body, rate, columns, j, k1, px, py, 0)
+        cy = carried.carry_column(body, rate, columns, j, k1, px, py, 1)
         slip = 0.0
         if j == column:
             slip = 1.0
@@ -89,10 +78,10 @@ def solve_slide(case, e):
             slip = law_rate(case, law, 1)
         elif j == columns:
             slip = law_rate(case, law, 2)
-            twice = 2.0 * body[k1, OMEGA] * sliding
+            twice = 2.0 * body[k1, carried.OMEGA] * sliding
             cx -= twice * gy
             cy += twice * gx
         if j < columns:
             sliding += slip * speed_of(case, j)
-        hang_column(body, rate, columns, j, a, cx + slip * gx, cy + slip * gy, rate[k1, 3 * j + 2], ax, ay)
-    return SOLVED
+        carried.hang_column(body, rate, columns, j, a, cx + slip * gx, cy + slip * gy, rate[k1, 3 * j + 2], ax, ay)
+    return carried.SOLVED

@@ -5,23 +5,8 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import lazy
+from mbsd.kinematics.groups import carried
 from mbsd.kinematics.groups.blocks import TRAIN
-from mbsd.kinematics.groups.carried import (
-    COS,
-    DOUBTED,
-    OMEGA,
-    SIN,
-    SOLVED,
-    X,
-    Y,
-    carried,
-    carry_column,
-    hang,
-    hang_column,
-    place_by_point,
-    turned_x,
-    turned_y,
-)
 from mbsd.kinematics.groups.cases import angle_of, predicted
 from mbsd.kinematics.groups.groups import FIRST, K1, K2, THIRD, Link, Made, Places
 
@@ -64,8 +49,8 @@ def solve_train(bodies, n, train, body_of, share_of, qk, vk, ak, turn, point):
     ak[at] = alpha
     turn[body, 0] = math.cos(angle)
     turn[body, 1] = math.sin(angle)
-    carried(qk, vk, ak, turn, bodies[K1], n[P1_X], n[P1_Y], p)
-    hang(qk, vk, ak, turn, body, p, n[PA_X], n[PA_Y])
+    carried.carried(qk, vk, ak, turn, bodies[K1], n[P1_X], n[P1_Y], p)
+    carried.hang(qk, vk, ak, turn, body, p, n[PA_X], n[PA_Y])
 
 
 @lazy(int)
@@ -79,22 +64,22 @@ def embed_train(bodies, n, body, rate, base, coordinate):
     second = angle_of(body, base, coordinate, k2)
     third = angle_of(body, base, coordinate, k3)
     if not abs(second - predicted(base, coordinate, k2)) <= UNSURE:
-        return DOUBTED
+        return carried.DOUBTED
     if not abs(third - predicted(base, coordinate, k3)) <= UNSURE:
-        return DOUBTED
+        return carried.DOUBTED
     angle = n[CONSTANT] + n[SHARE_2] * second + n[SHARE_3] * third
-    body[a, COS] = math.cos(angle)
-    body[a, SIN] = math.sin(angle)
-    body[a, OMEGA] = n[SHARE_2] * body[k2, OMEGA] + n[SHARE_3] * body[k3, OMEGA]
-    px = turned_x(body, k1, n[P1_X], n[P1_Y])
-    py = turned_y(body, k1, n[P1_X], n[P1_Y])
-    cx = body[k1, X] + px
-    cy = body[k1, Y] + py
-    ax = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
-    ay = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
+    body[a, carried.COS] = math.cos(angle)
+    body[a, carried.SIN] = math.sin(angle)
+    body[a, carried.OMEGA] = n[SHARE_2] * body[k2, carried.OMEGA] + n[SHARE_3] * body[k3, carried.OMEGA]
+    px = carried.turned_x(body, k1, n[P1_X], n[P1_Y])
+    py = carried.turned_y(body, k1, n[P1_X], n[P1_Y])
+    cx = body[k1, carried.X] + px
+    cy = body[k1, carried.Y] + py
+    ax = carried.place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
+    ay = carried.place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
     for j in range(columns + 1):
-        cx = carry_column(body, rate, columns, j, k1, px, py, 0)
-        cy = carry_column(body, rate, columns, j, k1, px, py, 1)
+        cx = carried.carry_column(body, rate, columns, j, k1, px, py, 0)
+        cy = carried.carry_column(body, rate, columns, j, k1, px, py, 1)
         omega = n[SHARE_2] * rate[k2, 3 * j + 2] + n[SHARE_3] * rate[k3, 3 * j + 2]
-        hang_column(body, rate, columns, j, a, cx, cy, omega, ax, ay)
-    return SOLVED
+        carried.hang_column(body, rate, columns, j, a, cx, cy, omega, ax, ay)
+    return carried.SOLVED

@@ -4,18 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbsd.kinematics.groups.carried import (
-    OMEGA,
-    SOLVED,
-    X,
-    Y,
-    carry_column,
-    hang_column,
-    place_by_point,
-    turn_as,
-    turned_x,
-    turned_y,
-)
+from mbsd.kinematics.groups import carried
 from mbsd.kinematics.groups.cases import columns_of, formula
 from mbsd.kinematics.groups.groups import FIRST, K1, WELDED, GroupKind, Link, Made, Places, own_angle
 
@@ -47,16 +36,16 @@ def solve_welded(case, e):
     a = bodies[FIRST]
     k1 = bodies[K1]
     columns = columns_of(case)
-    px = turned_x(body, k1, n[P1_X], n[P1_Y])
-    py = turned_y(body, k1, n[P1_X], n[P1_Y])
-    turn_as(body, a, k1, n[COS_A], n[SIN_A])
-    cx = body[k1, X] + px
-    cy = body[k1, Y] + py
-    ax = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
-    ay = place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
-    body[a, OMEGA] = body[k1, OMEGA]
+    px = carried.turned_x(body, k1, n[P1_X], n[P1_Y])
+    py = carried.turned_y(body, k1, n[P1_X], n[P1_Y])
+    carried.turn_as(body, a, k1, n[COS_A], n[SIN_A])
+    cx = body[k1, carried.X] + px
+    cy = body[k1, carried.Y] + py
+    ax = carried.place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 0)
+    ay = carried.place_by_point(body, a, cx, cy, n[PA_X], n[PA_Y], 1)
+    body[a, carried.OMEGA] = body[k1, carried.OMEGA]
     for j in range(columns + 1):
-        cx = carry_column(body, case.rate, columns, j, k1, px, py, 0)
-        cy = carry_column(body, case.rate, columns, j, k1, px, py, 1)
-        hang_column(body, case.rate, columns, j, a, cx, cy, case.rate[k1, 3 * j + 2], ax, ay)
-    return SOLVED
+        cx = carried.carry_column(body, case.rate, columns, j, k1, px, py, 0)
+        cy = carried.carry_column(body, case.rate, columns, j, k1, px, py, 1)
+        carried.hang_column(body, case.rate, columns, j, a, cx, cy, case.rate[k1, 3 * j + 2], ax, ay)
+    return carried.SOLVED

@@ -9,18 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbsd.kinematics.groups.carried import (
-    OMEGA,
-    SOLVED,
-    X,
-    Y,
-    carry_column,
-    hang_column,
-    place_by_point,
-    turn_as,
-    turned_x,
-    turned_y,
-)
+from mbsd.kinematics.groups import carried
 from mbsd.kinematics.groups.cases import columns_of, formula, speed_of
 from mbsd.kinematics.groups.groups import FIRST, K1, K2, YOKE, GroupKind, Link, Made, Places, cross, turned
 
@@ -64,37 +53,41 @@ def solve_yoke(case, e):
     k1 = bodies[K1]
     k2 = bodies[K2]
     columns = columns_of(case)
-    px = turned_x(body, k1, n[S1_X], n[S1_Y])
-    py = turned_y(body, k1, n[S1_X], n[S1_Y])
-    ex = turned_x(body, k1, n[E_X], n[E_Y])
-    ey = turned_y(body, k1, n[E_X], n[E_Y])
-    nx = turned_x(body, k1, n[N_X], n[N_Y])
-    ny = turned_y(body, k1, n[N_X], n[N_Y])
-    qx = turned_x(body, k2, n[Q2_X], n[Q2_Y])
-    qy = turned_y(body, k2, n[Q2_X], n[Q2_Y])
-    dx = body[k2, X] + qx - body[k1, X] - px
-    dy = body[k2, Y] + qy - body[k1, Y] - py
+    px = carried.turned_x(body, k1, n[S1_X], n[S1_Y])
+    py = carried.turned_y(body, k1, n[S1_X], n[S1_Y])
+    ex = carried.turned_x(body, k1, n[E_X], n[E_Y])
+    ey = carried.turned_y(body, k1, n[E_X], n[E_Y])
+    nx = carried.turned_x(body, k1, n[N_X], n[N_Y])
+    ny = carried.turned_y(body, k1, n[N_X], n[N_Y])
+    qx = carried.turned_x(body, k2, n[Q2_X], n[Q2_Y])
+    qy = carried.turned_y(body, k2, n[Q2_X], n[Q2_Y])
+    dx = body[k2, carried.X] + qx - body[k1, carried.X] - px
+    dy = body[k2, carried.Y] + qy - body[k1, carried.Y] - py
     inverse = 1.0 / (nx * ex + ny * ey)
     slide = (nx * dx + ny * dy) * inverse
     sx = px + slide * ex
     sy = py + slide * ey
     gx = px + dx
     gy = py + dy
-    turn_as(body, a, k1, n[COS_A], n[SIN_A])
-    tx = body[k1, X] + sx
-    ty = body[k1, Y] + sy
-    ax = place_by_point(body, a, tx, ty, n[SA_X], n[SA_Y], 0)
-    ay = place_by_point(body, a, tx, ty, n[SA_X], n[SA_Y], 1)
-    spin = body[k1, OMEGA]
-    body[a, OMEGA] = spin
+    carried.turn_as(body, a, k1, n[COS_A], n[SIN_A])
+    tx = body[k1, carried.X] + sx
+    ty = body[k1, carried.Y] + sy
+    ax = carried.place_by_point(body, a, tx, ty, n[SA_X], n[SA_Y], 0)
+    ay = carried.place_by_point(body, a, tx, ty, n[SA_X], n[SA_Y], 1)
+    spin = body[k1, carried.OMEGA]
+    body[a, carried.OMEGA] = spin
     sliding = 0.0
     past_x = 0.0
     past_y = 0.0
     for j in range(columns + 1):
-        fx = carry_column(body, rate, columns, j, k2, qx, qy, 0) - carry_column(body, rate, columns, j, k1, gx, gy, 0)
-        fy = carry_column(body, rate, columns, j, k2, qx, qy, 1) - carry_column(body, rate, columns, j, k1, gx, gy, 1)
-        tx = carry_column(body, rate, columns, j, k1, sx, sy, 0)
-        ty = carry_column(body, rate, columns, j, k1, sx, sy, 1)
+        fx = carried.carry_column(body, rate, columns, j, k2, qx, qy, 0) - carried.carry_column(
+            body, rate, columns, j, k1, gx, gy, 0
+        )
+        fy = carried.carry_column(body, rate, columns, j, k2, qx, qy, 1) - carried.carry_column(
+            body, rate, columns, j, k1, gx, gy, 1
+        )
+        tx = carried.carry_column(body, rate, columns, j, k1, sx, sy, 0)
+        ty = carried.carry_column(body, rate, columns, j, k1, sx, sy, 1)
         if j == columns:
             fx += 2.0 * spin * past_y
             fy -= 2.0 * spin * past_x
@@ -105,5 +98,5 @@ def solve_yoke(case, e):
             sliding += slip * speed_of(case, j)
             past_x += fx * speed_of(case, j)
             past_y += fy * speed_of(case, j)
-        hang_column(body, rate, columns, j, a, tx + slip * ex, ty + slip * ey, rate[k1, 3 * j + 2], ax, ay)
-    return SOLVED
+        carried.hang_column(body, rate, columns, j, a, tx + slip * ex, ty + slip * ey, rate[k1, 3 * j + 2], ax, ay)
+    return carried.SOLVED

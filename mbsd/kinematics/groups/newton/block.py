@@ -14,25 +14,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import lazy, merged
-from mbsd.kinematics.groups.blocks import (
-    BODIES,
-    BODY,
-    DOUBTED_BEFORE,
-    EQUATIONS,
-    FREE,
-    HANGS,
-    LARGEST,
-    MOTION,
-    NEAR,
-    PLACE_I,
-    PLACE_J,
-    SIZE,
-    SLIDE,
-    STRIDE,
-    UNKNOWN,
-    UNKNOWNS,
-    Motion,
-)
+from mbsd.kinematics.groups import blocks
 from mbsd.kinematics.groups.carried import DOUBTED, MEETING, SOLVED
 from mbsd.kinematics.groups.newton.matrix import extent, factor, held, solve, turns_too_far
 from mbsd.kinematics.groups.newton.rows import bend_of, evaluate_row, fill_columns, move, read_unknowns
@@ -47,15 +29,15 @@ from mbsd.kinematics.newton import (
     quintic_value,
 )
 
-COLUMNS = LARGEST * LARGEST
+COLUMNS = blocks.LARGEST * blocks.LARGEST
 """Start of the columns of unknowns in the scratch, after the matrix."""
 
 
 @merged
 def linearise(block, q, turn, work, values):
     """Fill values (n,) of the equations, their rows and derivatives in ``work``, and G in its matrix."""
-    count = block.head[BODIES]
-    n = block.head[EQUATIONS]
+    count = block.head[blocks.BODIES]
+    n = block.head[blocks.EQUATIONS]
     rows = block.rows
     jac = work.jac
     scratch = work.matrix
@@ -63,8 +45,8 @@ def linearise(block, q, turn, work, values):
     relative = scratch[COLUMNS + 3 * n * count :]
     for r in range(n):
         values[r] = evaluate_row(rows[r], block.arms[r], q, turn, block.numbers, relative, work.out[r], jac[r])
-        first = rows[r, PLACE_I]
-        second = rows[r, PLACE_J]
+        first = rows[r, blocks.PLACE_I]
+        second = rows[r, blocks.PLACE_J]
         for j in range(n):
             rate = 0.0
             for c in range(3):
@@ -80,12 +62,12 @@ def correction(block, du, per_metre):
     """Return largest of a change of the unknowns, in sizes and rad; NaN counts as infinite."""
     tree = block.tree
     largest = 0.0
-    for e in range(block.head[BODIES]):
-        c = tree[e, UNKNOWN]
-        hangs = tree[e, HANGS]
-        for i in range(UNKNOWNS[hangs]):
+    for e in range(block.head[blocks.BODIES]):
+        c = tree[e, blocks.UNKNOWN]
+        hangs = tree[e, blocks.HANGS]
+        for i in range(blocks.UNKNOWNS[hangs]):
             part = abs(du[c + i])
-            if hangs == SLIDE or (hangs == FREE and i < 2):
+            if hangs == blocks.SLIDE or (hangs == blocks.FREE and i < 2):
                 part *= per_metre
             if not part <= largest:
                 largest = part if part == part else math.inf
@@ -99,11 +81,11 @@ def iterate(turned, block, drive, motion, work):
     ``work`` takes the factors of G and the equations; bodies stand where the last of them were evaluated. Returns the
     determinant of G, 0 where it is singular, and the last, first and second correction.
     """
-    n = block.head[EQUATIONS]
+    n = block.head[blocks.EQUATIONS]
     unknown = work.unknown
     du = work.solution
     scratch = work.matrix
-    per_metre = 1.0 / block.arms[0, SIZE]
+    per_metre = 1.0 / block.arms[0, blocks.SIZE]
     determinant = 0.0
     first = 0.0
     second = 0.0
@@ -116,7 +98,7 @@ def iterate(turned, block, drive, motion, work):
         if determinant == 0.0:
             break
         for r in range(n):
-            du[0, r] = drive[block.rows[r, MOTION], 0] - du[0, r]
+            du[0, r] = drive[block.rows[r, blocks.MOTION], 0] - du[0, r]
         solve(scratch, du[1], n, du[0])
         for c in range(n):
             unknown[0, c] += du[0, c]
@@ -136,15 +118,15 @@ def in_doubt(k, block, history, h, per_metre, first, second):
     """Return SOLVED if row k is on its branch, else in which step a pose is needed."""
     q = history.q
     step = 0.0
-    for e in range(block.head[BODIES]):
-        step = max(step, extent(q[k], q[k - 1], block.tree[e, BODY], per_metre))
-    for e in range(block.head[NEAR]):
+    for e in range(block.head[blocks.BODIES]):
+        step = max(step, extent(q[k], q[k - 1], block.tree[e, blocks.BODY], per_metre))
+    for e in range(block.head[blocks.NEAR]):
         step = max(step, extent(q[k], q[k - 1], block.near[e], per_metre))
     if is_suspicious(first, second, step):
         return DOUBTED
     refused = heads_for_zero(history.determinant, history.times, k, 0)
     if refused > 0:
-        return DOUBTED if refused == k else DOUBTED_BEFORE
+        return DOUBTED if refused == k else blocks.DOUBTED_BEFORE
     return DOUBTED if turns_too_far(block.head, block.tree, q, history.v, history.a, k, h, per_metre) else SOLVED
 
 
@@ -154,25 +136,25 @@ def predict(k, block, history):
     tree = block.tree
     q = history.q
     factors = quintic_factors(history.times, k, history.times[k]) if k > 0 else (0.0, 0.0, 0.0, 0.0, 0.0)
-    for e in range(block.head[BODIES]):
-        for c in range(3 * tree[e, BODY], 3 * tree[e, BODY] + 3):
+    for e in range(block.head[blocks.BODIES]):
+        for c in range(3 * tree[e, blocks.BODY], 3 * tree[e, blocks.BODY] + 3):
             q[k, c] = history.start[c] if k == 0 else quintic_value(factors, k, q, history.v, history.a, c)
 
 
 @lazy(int)
 def solve_block(k, block, history, work):
     """Fill row k of q, v, a (T, 3 nb) for the bodies of one block; returns SOLVED, or why not."""
-    n = block.head[EQUATIONS]
+    n = block.head[blocks.EQUATIONS]
     rows = block.rows
     arms = block.arms
     unknown = work.unknown
-    per_metre = 1.0 / arms[0, SIZE]
-    motion = Motion(history.q[k], history.v[k], history.a[k], history.turn)
+    per_metre = 1.0 / arms[0, blocks.SIZE]
+    motion = blocks.Motion(history.q[k], history.v[k], history.a[k], history.turn)
     drive = history.drives[k]
     h = history.times[k] - history.times[k - 1] if k > 0 else 0.0
     for r in range(n):
-        law = rows[r, MOTION]
-        if k > 0 and law > 0 and jumps(drive[law], history.drives[k - 1, law], h, arms[r, STRIDE]):
+        law = rows[r, blocks.MOTION]
+        if k > 0 and law > 0 and jumps(drive[law], history.drives[k - 1, law], h, arms[r, blocks.STRIDE]):
             return DOUBTED
     predict(k, block, history)
     read_unknowns(block, motion.q, motion.turn, unknown[0])
@@ -186,12 +168,12 @@ def solve_block(k, block, history, work):
     if not change <= ROUNDING:
         return DOUBTED
     for r in range(n):
-        unknown[1, r] = drive[rows[r, MOTION], 1] - held(work.jac[r], rows[r], motion.v)
+        unknown[1, r] = drive[rows[r, blocks.MOTION], 1] - held(work.jac[r], rows[r], motion.v)
     solve(work.matrix, work.solution[1], n, unknown[1])
     move(block, unknown, False, motion, work.point)
     for r in range(n):
         bend = bend_of(rows[r], arms[r], motion.q, motion.v, motion.turn, work.out[r])
-        unknown[2, r] = bend + drive[rows[r, MOTION], 2] - held(work.jac[r], rows[r], motion.a)
+        unknown[2, r] = bend + drive[rows[r, blocks.MOTION], 2] - held(work.jac[r], rows[r], motion.a)
     solve(work.matrix, work.solution[1], n, unknown[2])
     move(block, unknown, True, motion, work.point)
     return in_doubt(k, block, history, h, per_metre, first, second) if k > 0 else SOLVED

@@ -8,46 +8,9 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import merged
-from mbsd.equations.relative.equation import (
-    FA,
-    FX,
-    FXX,
-    FXY,
-    FY,
-    FYY,
-    TURN,
-    A,
-    F,
-    X,
-    Y,
-    clear,
-    evaluate,
-    fill_row,
-    gamma_of,
-)
+from mbsd.equations.relative import equation
 from mbsd.equations.system import LAST, ZERO
-from mbsd.kinematics.groups.blocks import (
-    ACROSS,
-    ADDRESS,
-    ALONG,
-    ARM,
-    AT,
-    BODIES,
-    BODY,
-    BODY_I,
-    BODY_J,
-    EQUATION,
-    EQUATIONS,
-    FREE,
-    HANGS,
-    PARENT,
-    PARENT_PLACE,
-    PIN,
-    SLIDE,
-    SPECIAL,
-    TURNED,
-    UNKNOWN,
-)
+from mbsd.kinematics.groups import blocks
 from mbsd.kinematics.groups.carried import carried, follow, hang
 
 
@@ -55,21 +18,21 @@ from mbsd.kinematics.groups.carried import carried, follow, hang
 def read_unknowns(block, q, turn, u):
     """Read the unknowns u (n,) of the block's bodies from the pose q (3 nb,), and turn the bodies."""
     tree = block.tree
-    count = block.head[BODIES]
+    count = block.head[blocks.BODIES]
     for e in range(count):
-        body = tree[e, BODY]
+        body = tree[e, blocks.BODY]
         turn[body, 0] = math.cos(q[3 * body + 2])
         turn[body, 1] = math.sin(q[3 * body + 2])
     for e in range(count):
-        body = tree[e, BODY]
-        parent = tree[e, PARENT]
-        c = tree[e, UNKNOWN]
-        if tree[e, HANGS] == PIN:
+        body = tree[e, blocks.BODY]
+        parent = tree[e, blocks.PARENT]
+        c = tree[e, blocks.UNKNOWN]
+        if tree[e, blocks.HANGS] == blocks.PIN:
             u[c] = q[3 * body + 2]
-        elif tree[e, HANGS] == FREE:
+        elif tree[e, blocks.HANGS] == blocks.FREE:
             for i in range(3):
                 u[c + i] = q[3 * body + i]
-        elif tree[e, HANGS] == SLIDE:
+        elif tree[e, blocks.HANGS] == blocks.SLIDE:
             n = block.frame[e]
             x = q[3 * body] - q[3 * parent] + turn[body, 0] * n[5] - turn[body, 1] * n[6]
             y = q[3 * body + 1] - q[3 * parent + 1] + turn[body, 1] * n[5] + turn[body, 0] * n[6]
@@ -100,25 +63,25 @@ def move(block, u, turned, motion, point):
     v = motion.v
     a = motion.a
     turn = motion.turn
-    for e in range(block.head[BODIES]):
-        body = tree[e, BODY]
-        parent = tree[e, PARENT]
-        c = tree[e, UNKNOWN]
+    for e in range(block.head[blocks.BODIES]):
+        body = tree[e, blocks.BODY]
+        parent = tree[e, blocks.PARENT]
+        c = tree[e, blocks.UNKNOWN]
         n = frame[e]
-        hangs = tree[e, HANGS]
-        if hangs == FREE:
+        hangs = tree[e, blocks.HANGS]
+        if hangs == blocks.FREE:
             for i in range(3):
                 q[3 * body + i] = u[0, c + i]
                 v[3 * body + i] = u[1, c + i]
                 a[3 * body + i] = u[2, c + i]
             turn[body, 0] = math.cos(q[3 * body + 2])
             turn[body, 1] = math.sin(q[3 * body + 2])
-        elif hangs == SLIDE:
+        elif hangs == blocks.SLIDE:
             follow(q, v, a, turn, body, parent, n[4])
             slid(q, v, a, turn, parent, n, u[0, c], u[1, c], u[2, c], point[0])
             hang(q, v, a, turn, body, point[0], n[5], n[6])
         else:
-            if hangs == PIN:
+            if hangs == blocks.PIN:
                 q[3 * body + 2] = u[0, c]
                 v[3 * body + 2] = u[1, c]
                 a[3 * body + 2] = u[2, c]
@@ -136,18 +99,18 @@ def fill_columns(block, q, turn, columns):
     """Fill columns (bodies, unknowns, 3) with rates of each body for a unit rate of each unknown."""
     tree = block.tree
     frame = block.frame
-    unknowns = block.head[EQUATIONS]
-    for e in range(block.head[BODIES]):
-        body = tree[e, BODY]
-        parent = tree[e, PARENT]
-        place = tree[e, PARENT_PLACE]
-        c = tree[e, UNKNOWN]
-        hangs = tree[e, HANGS]
+    unknowns = block.head[blocks.EQUATIONS]
+    for e in range(block.head[blocks.BODIES]):
+        body = tree[e, blocks.BODY]
+        parent = tree[e, blocks.PARENT]
+        place = tree[e, blocks.PARENT_PLACE]
+        c = tree[e, blocks.UNKNOWN]
+        hangs = tree[e, blocks.HANGS]
         n = frame[e]
         own = 3 * unknowns * e
         for j in range(3 * unknowns):
             columns[own + j] = 0.0
-        if hangs == FREE:
+        if hangs == blocks.FREE:
             for i in range(3):
                 columns[own + 3 * (c + i) + i] = 1.0
             continue
@@ -159,15 +122,15 @@ def fill_columns(block, q, turn, columns):
             of_parent = 3 * unknowns * place
             for j in range(unknowns):
                 omega = columns[of_parent + 3 * j + 2]
-                turning = omega if hangs != PIN else 0.0
+                turning = omega if hangs != blocks.PIN else 0.0
                 columns[own + 3 * j] = columns[of_parent + 3 * j] - omega * ry + turning * sy
                 columns[own + 3 * j + 1] = columns[of_parent + 3 * j + 1] + omega * rx - turning * sx
                 columns[own + 3 * j + 2] = turning
-        if hangs == PIN:
+        if hangs == blocks.PIN:
             columns[own + 3 * c] += sy
             columns[own + 3 * c + 1] -= sx
             columns[own + 3 * c + 2] += 1.0
-        elif hangs == SLIDE:
+        elif hangs == blocks.SLIDE:
             columns[own + 3 * c] += turn[parent, 0] * n[2] - turn[parent, 1] * n[3]
             columns[own + 3 * c + 1] += turn[parent, 1] * n[2] + turn[parent, 0] * n[3]
 
@@ -175,8 +138,8 @@ def fill_columns(block, q, turn, columns):
 @merged
 def evaluate_row(row, n, q, turn, numbers, relative, out, jac):
     """Return F of an equation; fill out (10,) with F and its derivatives, jac (6,) with its row."""
-    i = row[BODY_I]
-    j = row[BODY_J]
+    i = row[blocks.BODY_I]
+    j = row[blocks.BODY_J]
     six = turn[i, 0] * n[0] - turn[i, 1] * n[1]
     siy = turn[i, 1] * n[0] + turn[i, 0] * n[1]
     ux = turn[i, 0] * n[2] - turn[i, 1] * n[3]
@@ -188,44 +151,44 @@ def evaluate_row(row, n, q, turn, numbers, relative, out, jac):
     x = ux * dx + uy * dy
     y = ux * dy - uy * dx
     angle = q[3 * j + 2] - q[3 * i + 2]
-    kind = row[EQUATION]
-    if kind == SPECIAL:
-        relative[X] = x
-        relative[Y] = y
-        relative[A] = angle + numbers[row[AT]]
-        relative[TURN] = q[3 * row[ARM] + 2] - q[3 * i + 2]
+    kind = row[blocks.EQUATION]
+    if kind == blocks.SPECIAL:
+        relative[equation.X] = x
+        relative[equation.Y] = y
+        relative[equation.A] = angle + numbers[row[blocks.AT]]
+        relative[equation.TURN] = q[3 * row[blocks.ARM] + 2] - q[3 * i + 2]
         relative[ZERO] = 0.0
         relative[LAST] = math.nan
-        evaluate(row[ADDRESS], numbers[row[AT] :], relative, out)
+        equation.evaluate(row[blocks.ADDRESS], numbers[row[blocks.AT] :], relative, out)
     else:
-        clear(out)
-        if kind == ALONG:
-            out[F] = x - n[6]
-            out[FX] = 1.0
-        elif kind == ACROSS:
-            out[F] = y - n[6]
-            out[FY] = 1.0
-        elif kind == TURNED:
-            out[F] = angle - n[6]
-            out[FA] = 1.0
+        equation.clear(out)
+        if kind == blocks.ALONG:
+            out[equation.F] = x - n[6]
+            out[equation.FX] = 1.0
+        elif kind == blocks.ACROSS:
+            out[equation.F] = y - n[6]
+            out[equation.FY] = 1.0
+        elif kind == blocks.TURNED:
+            out[equation.F] = angle - n[6]
+            out[equation.FA] = 1.0
         else:
             length = math.sqrt(x * x + y * y)
             cube = length * length * length
-            out[F] = length - n[6]
-            out[FX] = x / length
-            out[FY] = y / length
-            out[FXX] = y * y / cube
-            out[FXY] = -x * y / cube
-            out[FYY] = x * x / cube
-    fill_row(out, ux, uy, x, y, six, siy, sjx, sjy, jac)
-    return out[F]
+            out[equation.F] = length - n[6]
+            out[equation.FX] = x / length
+            out[equation.FY] = y / length
+            out[equation.FXX] = y * y / cube
+            out[equation.FXY] = -x * y / cube
+            out[equation.FYY] = x * x / cube
+    equation.fill_row(out, ux, uy, x, y, six, siy, sjx, sjy, jac)
+    return out[equation.F]
 
 
 @merged
 def bend_of(row, n, q, v, turn, out):
     """Return gamma of one equation without f'', after evaluate_row at the same pose."""
-    i = row[BODY_I]
-    j = row[BODY_J]
+    i = row[blocks.BODY_I]
+    j = row[blocks.BODY_J]
     omega = v[3 * i + 2]
     other = v[3 * j + 2]
     six = turn[i, 0] * n[0] - turn[i, 1] * n[1]
@@ -242,4 +205,4 @@ def bend_of(row, n, q, v, turn, out):
     cy = omega * omega * siy - other * other * sjy
     x = ux * dx + uy * dy
     y = ux * dy - uy * dx
-    return gamma_of(out, ux, uy, x, y, vx, vy, cx, cy, omega, other - omega)
+    return equation.gamma_of(out, ux, uy, x, y, vx, vy, cx, cy, omega, other - omega)

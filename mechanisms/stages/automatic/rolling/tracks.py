@@ -11,32 +11,13 @@ import numpy as np
 
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
-from mechanisms.stages.automatic.layout.curves import (
-    continued,
-    curve_path,
-    end_ways,
-    evenly,
-    followed,
-    on_body,
-    turns_left,
-)
+from mechanisms.stages.automatic.layout import curves
 from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Reach
 from mechanisms.stages.automatic.layout.layout import Feature, Layout
 from mechanisms.stages.automatic.layout.plan import Foot, Plan
 from mechanisms.stages.automatic.layout.planar import Rounded, around, convex_hull, disc
 from mechanisms.stages.automatic.pins.pins import pins_on
-from mechanisms.stages.automatic.rolling.roads import (
-    CHORD,
-    PIECES,
-    THICK,
-    Road,
-    along,
-    backed,
-    behind,
-    is_simple,
-    polygon,
-    straight_back,
-)
+from mechanisms.stages.automatic.rolling import roads
 from mechanisms.stages.automatic.rolling.rounds import Round
 from shared.shapes import outline
 from shared.shapes.build import eased, extruded
@@ -65,13 +46,13 @@ class Track(Feature):
     carried: Round
     path: np.ndarray
     """(n, 2) the surface; what is carried is on its left. Closed: its last place is its first."""
-    road: Road | None = None
+    road: roads.Road | None = None
     """Surface of an open one with what lies behind it, as if on ground."""
 
     @property
     def inside(self) -> bool:
         """True if it lies round what it carries."""
-        return self.road is None and turns_left(self.path)
+        return self.road is None and curves.turns_left(self.path)
 
     @property
     def what(self) -> str:
@@ -86,8 +67,8 @@ class Track(Feature):
             return [Anchor(self.body, float(x), float(y), EDGE) for x, y in _few(convex_hull(self.road.band.border))]
         if self.road is not None:
             ends = (self.path[[0, -1]] + self.road.feet[::-1]) / 2
-            return [Anchor(self.body, float(x), float(y), THICK / 2 + EDGE) for x, y in ends]
-        return [Anchor(self.body, float(x), float(y), THICK) for x, y in _few(convex_hull(self.path))]
+            return [Anchor(self.body, float(x), float(y), roads.THICK / 2 + EDGE) for x, y in ends]
+        return [Anchor(self.body, float(x), float(y), roads.THICK) for x, y in _few(convex_hull(self.path))]
 
     def items(self, layout: Layout) -> Iterable[Item]:
         """Yield the convex pieces up to the height of what it carries, and a rule.
@@ -114,17 +95,17 @@ class Track(Feature):
         elif not self.inside:
             yield Rounded(convex_hull(self.path), 0.2)
         else:
-            few = self.path[:: max(1, len(self.path) // PIECES)]
-            middle = few - THICK / 2 * closed_normals(few)
+            few = self.path[:: max(1, len(self.path) // roads.PIECES)]
+            middle = few - roads.THICK / 2 * closed_normals(few)
             for a, b in pairwise([*middle, middle[0]]):
-                yield Rounded(np.array([a, b]), THICK / 2 + 0.2)
+                yield Rounded(np.array([a, b]), roads.THICK / 2 + 0.2)
 
     def build(self, plan: Plan, heights: Heights) -> None:
         """Build the wall."""
         seat, other = plan.layout.sizes.pivot.fit.seat, self.carried.body
         if self.body == "ground":
             low, high = seat, self.carried.top(heights)
-            plan.feet += [Foot("", float(x), float(y), THICK) for x, y in _corners(self.path)]
+            plan.feet += [Foot("", float(x), float(y), roads.THICK) for x, y in _corners(self.path)]
         elif heights.bottom(self.body) < heights.bottom(other):
             low, high = heights.top(self.body) + seat, self.carried.top(heights)
         else:
@@ -158,16 +139,18 @@ class Track(Feature):
     def _wall(self, low: float, high: float) -> cq.Workplane:
         if self.road is not None:
             return self.road.wall(low, high)
-        corners = simplified(self.path, CHORD)
-        surface = extruded(polygon(corners[:-1]), high - low, low)
+        corners = simplified(self.path, roads.CHORD)
+        surface = extruded(roads.polygon(corners[:-1]), high - low, low)
         if not self.inside:
             return surface
-        hull = convex_hull(simplified(self.path, CHORD)[:-1], 1e-5)
-        block = extruded(outline.hull([(float(x), float(y), THICK) for x, y in hull]), high - low, low)
-        return eased(block, 0.8, ">Z", chamfer=True).cut(extruded(polygon(corners[:-1]), high - low + 2, low - 1))
+        hull = convex_hull(simplified(self.path, roads.CHORD)[:-1], 1e-5)
+        block = extruded(outline.hull([(float(x), float(y), roads.THICK) for x, y in hull]), high - low, low)
+        return eased(block, 0.8, ">Z", chamfer=True).cut(extruded(roads.polygon(corners[:-1]), high - low + 2, low - 1))
 
 
-def track(name: str, body: str, carried: Round, path: np.ndarray, closed: bool, road: Road | None = None) -> Track:
+def track(
+    name: str, body: str, carried: Round, path: np.ndarray, closed: bool, road: roads.Road | None = None
+) -> Track:
     """Return a track on a path (n, 2) (rmm, the body's frame) with what it carries on its left.
 
     A closed one is closed here.
@@ -176,12 +159,12 @@ def track(name: str, body: str, carried: Round, path: np.ndarray, closed: bool, 
     """
     if closed:
         return Track(name, body, carried, np.vstack([path, path[:1]]))
-    return Track(name, body, carried, path, along(name, [carried], path) if road is None else road)
+    return Track(name, body, carried, path, roads.along(name, [carried], path) if road is None else road)
 
 
 def circle(at: tuple[float, float], radius: float, inside: bool) -> np.ndarray:
     """Return (n, 2) places of a circle with what it carries on its left."""
-    count = max(64, int(np.ceil(2 * np.pi * np.sqrt(radius / (8 * CHORD)))) * 4)
+    count = max(64, int(np.ceil(2 * np.pi * np.sqrt(radius / (8 * roads.CHORD)))) * 4)
     angle = np.linspace(0.0, 2 * np.pi if inside else -2 * np.pi, count, endpoint=False)
     return np.array(at) + radius * np.column_stack([np.cos(angle), np.sin(angle)])
 
@@ -238,20 +221,20 @@ LEAST = 1e-6
 """A continuation shorter than this (rmm) is left out."""
 
 
-def rolled_road(joint: Joint, part: Round, layout: Layout) -> Road:
+def rolled_road(joint: Joint, part: Round, layout: Layout) -> roads.Road:
     """Return the road of a disc that rolls on an open curve.
 
     Raises UserError where each would be in the disc's way.
     """
-    path = on_body(curve_path(joint.params["points"], False), joint.i, layout)
+    path = curves.on_body(curves.curve_path(joint.params["points"], False), joint.i, layout)
     centres = layout.seen(joint.j.body.name, layout.place(joint.j), joint.i.body.name)
     radius, few = layout.sizes.of_metres(joint.params["radius"]), centres[:: max(1, len(centres) // MOST)]
-    ways = end_ways(joint.params["points"], joint.i)
+    ways = curves.end_ways(joint.params["points"], joint.i)
     run = _run(path, ways, few, radius)
     tried = list(_surfaces(path, ways, run, radius))
     for surface in tried:
         if distances(few, surface).min() >= radius - OFF:
-            road = backed(joint.name, part, surface, few, radius - OFF)
+            road = roads.backed(joint.name, part, surface, few, radius - OFF)
             if road is not None:
                 return road
     raise UserError(_refusal(joint, tried[-1], centres, radius, layout))
@@ -263,41 +246,41 @@ def touched_path(touch: Joint | Force, places: np.ndarray, radius: float, layout
     It has as much of its straight continuations as a disc about ``places`` (T, 2) touches.
     """
     points, ends = touch.params["points"], []
-    path, ways = on_body(curve_path(points, False), touch.i, layout), end_ways(points, touch.i)
+    path, ways = curves.on_body(curves.curve_path(points, False), touch.i, layout), curves.end_ways(points, touch.i)
     for end, way in zip(path[[0, -1]], ways, strict=True):
         ahead = (places - end) @ way
-        beside = np.abs((places - end) @ behind(way)) - radius
+        beside = np.abs((places - end) @ roads.behind(way)) - radius
         out = ahead[(ahead > 0.0) & (beside < TOUCHES)]
         ends.append(end + (float(out.max()) + BEYOND[0] * radius) * way if len(out) else end)
     return _with_ends(path, np.array(ends))
 
 
-def touched_road(touch: Joint | Force, part: Round, path: np.ndarray, places: np.ndarray, layout: Layout) -> Road:
+def touched_road(touch: Joint | Force, part: Round, path: np.ndarray, places: np.ndarray, layout: Layout) -> roads.Road:
     """Return the road of a contact along a path (n, 2) (rmm) that a part about ``places`` (T, 2) touches.
 
     Raises UserError where nothing has room behind the surface.
     """
     few = places[:: max(1, len(places) // MOST)]
-    road = backed(touch.name, part, path, few, part.built_radius - part.pressed - OFF)
-    road = road or along(touch.name, [part], path)
-    if road.band is None and not is_simple(path, road.feet):
+    road = roads.backed(touch.name, part, path, few, part.built_radius - part.pressed - OFF)
+    road = road or roads.along(touch.name, [part], path)
+    if road.band is None and not roads.is_simple(path, road.feet):
         m = layout.m
         raise UserError(
             f"{m.name}: contact '{touch.name}': its curve turns back too far: neither a straight lower side nor a "
-            f"band of {THICK * layout.sizes.scale:.3g} mm behind it is clear of what touches it; cut it into several "
-            f"curves, or write {shown_file(m.name, 'parts')}"
+            f"band of {roads.THICK * layout.sizes.scale:.3g} mm behind it is clear of what touches it; cut it into "
+            f"several curves, or write {shown_file(m.name, 'parts')}"
         )
     return road
 
 
 def _run(path: np.ndarray, ways: np.ndarray, centres: np.ndarray, radius: float) -> tuple[float, float]:
     """Return the range along a curve in which a disc rolls (rmm from its first place)."""
-    even = evenly(path, FINE * len(path))
+    even = curves.evenly(path, FINE * len(path))
     offset = even + radius * normals(even)
     length, step = float(np.hypot(*np.diff(path, axis=0).T).sum()), float(np.hypot(*np.diff(offset, axis=0).T).max())
     ahead = float(np.linalg.norm(centres[:, None] - offset[[0, -1]], axis=2).max())
-    whole, before = continued(offset, ways, ahead, step)
-    numbers = followed(whole, centres, False) - before
+    whole, before = curves.continued(offset, ways, ahead, step)
+    numbers = curves.followed(whole, centres, False) - before
     last = len(even) - 1
     inside = np.clip(numbers, 0, last) * (length / last)
     places = inside + step * (np.minimum(numbers, 0) + np.maximum(numbers - last, 0))
@@ -329,7 +312,7 @@ def _with_ends(path: np.ndarray, ends: np.ndarray) -> np.ndarray:
 def _refusal(joint: Joint, surface: np.ndarray, centres: np.ndarray, radius: float, layout: Layout) -> str:
     m, scale, body = layout.m, layout.sizes.scale, joint.i.body.name
     away = distances(centres, surface)
-    sides = distances(centres, np.vstack([surface[-1:], straight_back(surface), surface[:1]]))
+    sides = distances(centres, np.vstack([surface[-1:], roads.straight_back(surface), surface[:1]]))
     at = int(np.argmin(away if away.min() < radius - OFF else sides))
     x, y = centres[at] * scale
     return (

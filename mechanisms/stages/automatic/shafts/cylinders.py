@@ -12,21 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mechanisms.stages.automatic.layout.planar import Rounded, around, box, disc, least_gap
-from mechanisms.stages.automatic.shafts.bodies import (
-    HUB,
-    KNUCKLE_EYE,
-    SAME,
-    Link,
-    Machine,
-    Piston,
-    Shaft,
-    carrier,
-    is_carrier,
-    refuse_near,
-    ring_reach,
-    rod_foot,
-    throw_of,
-)
+from mechanisms.stages.automatic.shafts import bodies
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
 
@@ -61,8 +47,8 @@ STEP = 0.96
 class Cylinder:
     """One piston with its liner."""
 
-    piston: Piston
-    shaft: Shaft | None
+    piston: bodies.Piston
+    shaft: bodies.Shaft | None
     bore: float
     origin: tuple[float, float]
     """Where s is 0, on ground."""
@@ -105,7 +91,7 @@ class Cylinder:
         return min(self.low, self.lowest - self.skirt) - ROOM * self.bore
 
 
-def cylinders(machine: Machine) -> dict[str, Cylinder]:
+def cylinders(machine: bodies.Machine) -> dict[str, Cylinder]:
     """Return cylinders by piston.
 
     Raises UserError naming cylinders that have no room beside each other, or none for their rod.
@@ -117,7 +103,7 @@ def cylinders(machine: Machine) -> dict[str, Cylinder]:
         own = wished[name]
         fixed = piston.area is not None
         if fixed and piston.link in machine.links:
-            refuse_near(machine, machine.links[piston.link], own)
+            bodies.refuse_near(machine, machine.links[piston.link], own)
         bore = own
         while bore >= (own if fixed else SMALLEST * own):
             made = _fitted(machine, piston, bore, wished)
@@ -135,7 +121,7 @@ def cylinders(machine: Machine) -> dict[str, Cylinder]:
     return {name: _beside_its_mate(machine, own, fitted) for name, own in fitted.items()}
 
 
-def _beside_its_mate(machine: Machine, own: Cylinder, every: Mapping[str, Cylinder]) -> Cylinder:
+def _beside_its_mate(machine: bodies.Machine, own: Cylinder, every: Mapping[str, Cylinder]) -> Cylinder:
     """Return the cylinder, shared with a piston that works against its own.
 
     Raises UserError if their crowns would meet.
@@ -145,7 +131,7 @@ def _beside_its_mate(machine: Machine, own: Cylinder, every: Mapping[str, Cylind
         along = np.array(own.piston.along)
         aside = abs(float(along[0] * way[1] - along[1] * way[0]))
         faces = float(along @ other.piston.along) < -1 + 1e-9 and float(way @ along) > own.highest
-        if other is own or not faces or aside > SAME or abs(other.piston.z - own.piston.z) > SAME:
+        if other is own or not faces or aside > bodies.SAME or abs(other.piston.z - own.piston.z) > bodies.SAME:
             continue
         low, high = own.highest + own.crown, float(way @ along) - other.highest - other.crown
         middle = (low + high) / 2
@@ -159,13 +145,13 @@ def _beside_its_mate(machine: Machine, own: Cylinder, every: Mapping[str, Cylind
     return own
 
 
-def _between(machine: Machine, own: Cylinder, other: Cylinder, along: np.ndarray) -> np.ndarray:
+def _between(machine: bodies.Machine, own: Cylinder, other: Cylinder, along: np.ndarray) -> np.ndarray:
     """Return (T,): distance of the wrist pins of two pistons along their cylinder."""
     ends = [machine.path(cylinder.piston.body, *cylinder.piston.wrist) @ along for cylinder in (own, other)]
     return ends[1] - ends[0]
 
 
-def _stroke(machine: Machine, piston: Piston) -> tuple[float, float, np.ndarray]:
+def _stroke(machine: bodies.Machine, piston: bodies.Piston) -> tuple[float, float, np.ndarray]:
     """Return the least and largest s of the wrist pin, and where s is 0."""
     shaft = _shaft(machine, piston)
     along, line = np.array(piston.along), np.array(piston.line)
@@ -174,13 +160,13 @@ def _stroke(machine: Machine, piston: Piston) -> tuple[float, float, np.ndarray]
     return float(s.min()), float(s.max()), foot
 
 
-def _shaft(machine: Machine, piston: Piston) -> Shaft | None:
+def _shaft(machine: bodies.Machine, piston: bodies.Piston) -> bodies.Shaft | None:
     link = machine.links.get(piston.link or "")
-    driven = throw_of(machine, link) if link else None
+    driven = bodies.throw_of(machine, link) if link else None
     return driven[0] if driven else None
 
 
-def _wish(machine: Machine, piston: Piston) -> float:
+def _wish(machine: bodies.Machine, piston: bodies.Piston) -> float:
     """Return the bore of the gas, else one equal to the stroke as far as neighbours allow."""
     if piston.area is not None:
         return math.sqrt(4 * piston.area / math.pi)
@@ -189,7 +175,7 @@ def _wish(machine: Machine, piston: Piston) -> float:
     return min([SQUARE * (high - low), *room])
 
 
-def _neighbours(machine: Machine, piston: Piston) -> dict[str, float]:
+def _neighbours(machine: bodies.Machine, piston: bodies.Piston) -> dict[str, float]:
     """Return pistons on the same line in the plane, or beside it, with their distances along z."""
     distances = {}
     for name, other in machine.pistons.items():
@@ -204,7 +190,7 @@ def _neighbours(machine: Machine, piston: Piston) -> dict[str, float]:
     return {name: z for name, z in distances.items() if z > 1e-6}
 
 
-def _refuse_near(machine: Machine, bores: Mapping[str, float]) -> None:
+def _refuse_near(machine: bodies.Machine, bores: Mapping[str, float]) -> None:
     for name, piston in machine.pistons.items():
         for other, apart in _neighbours(machine, piston).items():
             least = (0.5 + WALL + ROOM / 4) * (bores[name] + bores[other])
@@ -216,7 +202,7 @@ def _refuse_near(machine: Machine, bores: Mapping[str, float]) -> None:
                 )
 
 
-def _fitted(machine: Machine, piston: Piston, bore: float, bores: Mapping[str, float]) -> Cylinder | str:
+def _fitted(machine: bodies.Machine, piston: bodies.Piston, bore: float, bores: Mapping[str, float]) -> Cylinder | str:
     """Return the cylinder with this bore, or why it does not fit."""
     lowest, highest, foot = _stroke(machine, piston)
     shaft = _shaft(machine, piston)
@@ -224,8 +210,8 @@ def _fitted(machine: Machine, piston: Piston, bore: float, bores: Mapping[str, f
     low, skirt = lowest - SKIRT * bore, SKIRT * bore
     if shaft is not None:
         link = machine.links[piston.link or ""]
-        _, throw = throw_of(machine, link) or (shaft, shaft.throws[0])
-        swept = shaft.radius(throw) + max(BIG_END * bore, ring_reach(machine, link, bore)) + room
+        _, throw = bodies.throw_of(machine, link) or (shaft, shaft.throws[0])
+        swept = shaft.radius(throw) + max(BIG_END * bore, bodies.ring_reach(machine, link, bore)) + room
         skirt = min(skirt, max(LEAST_SKIRT * bore, lowest - swept))
         if lowest - skirt - room < CRANK_PIN * bore * 1.25:
             return f"its skirt would come down to {lowest - skirt:.4g} mm from the axis of the shaft"
@@ -240,42 +226,42 @@ def _fitted(machine: Machine, piston: Piston, bore: float, bores: Mapping[str, f
     return Cylinder(piston, shaft, bore, (float(foot[0]), float(foot[1])), lowest, highest, low, skirt)
 
 
-def rod_shapes(machine: Machine, link: Link, bore: float) -> list[Rounded]:
+def rod_shapes(machine: bodies.Machine, link: bodies.Link, bore: float) -> list[Rounded]:
     """Return the shapes of a connecting rod in the plane: its shank, and its big end."""
-    if is_carrier(machine, link):
+    if bodies.is_carrier(machine, link):
         return [*shank_shapes(machine, link, bore), flange_shape(machine, link, bore)]
-    if carrier(machine, link) is not None:
+    if bodies.carrier(machine, link) is not None:
         return shank_shapes(machine, link, bore)
     places = [(eye.x, eye.y) for eye in link.eyes]
     big = [disc(eye.x, eye.y, BIG_END * bore) for eye in link.eyes if eye.on in machine.shafts]
     return [around(places, (SHANK + 2 * ROOM) * bore), *big]
 
 
-def shank_shapes(machine: Machine, link: Link, bore: float) -> list[Rounded]:
+def shank_shapes(machine: bodies.Machine, link: bodies.Link, bore: float) -> list[Rounded]:
     """Return shapes of a carrier or a rod on one: shank, small end, and knuckle eye or crank hub."""
-    main = rod_foot(machine, link)
+    main = bodies.rod_foot(machine, link)
     ends = [eye for eye in link.eyes if eye.on in machine.pistons or eye is main]
     shank = around([(eye.x, eye.y) for eye in ends], (SHANK + ROOM / 2) * bore)
-    radius = HUB if is_carrier(machine, link) else KNUCKLE_EYE
+    radius = bodies.HUB if bodies.is_carrier(machine, link) else bodies.KNUCKLE_EYE
     discs = [disc(eye.x, eye.y, (radius if eye is main else SMALL_END) * bore) for eye in ends]
     return [shank, *discs]
 
 
-def flange_shape(machine: Machine, link: Link, bore: float) -> Rounded:
+def flange_shape(machine: bodies.Machine, link: bodies.Link, bore: float) -> Rounded:
     """Return the outline of a carrier's flanges, round its knuckle pins and its big end."""
-    main = rod_foot(machine, link)
+    main = bodies.rod_foot(machine, link)
     pins = [eye for eye in link.eyes if eye.on in machine.links]
     turns = [k * math.pi / 6 for k in range(12)] if main is not None else []
-    wide = (BIG_END - KNUCKLE_EYE) * bore
+    wide = (BIG_END - bodies.KNUCKLE_EYE) * bore
     own = [(main.x + wide * math.cos(a), main.y + wide * math.sin(a)) for a in turns] if main is not None else []
-    return around([*((eye.x, eye.y) for eye in pins), *own], KNUCKLE_EYE * bore)
+    return around([*((eye.x, eye.y) for eye in pins), *own], bodies.KNUCKLE_EYE * bore)
 
 
-def _has_room(machine: Machine, piston: Piston, foot: np.ndarray, low: float, bore: float) -> bool:
+def _has_room(machine: bodies.Machine, piston: bodies.Piston, foot: np.ndarray, low: float, bore: float) -> bool:
     """Return True if no rod meets a liner that begins at ``low``: its own leans, others pass beside it."""
     along, own = np.array(piston.along), machine.links[piston.link or ""]
     left = np.array([-along[1], along[0]])
-    main = rod_foot(machine, own)
+    main = bodies.rod_foot(machine, own)
     eyes = [eye for eye in own.eyes if eye.on == piston.body or eye is main]
     start, end = (machine.path(own.body, eye.x, eye.y) - foot for eye in eyes)
     a, b = sorted((start, end), key=lambda path: float((path @ along).mean()))
@@ -298,7 +284,7 @@ def _has_room(machine: Machine, piston: Piston, foot: np.ndarray, low: float, bo
     return True
 
 
-def _neighbour_limit(machine: Machine, piston: Piston, bore: float) -> float:
+def _neighbour_limit(machine: bodies.Machine, piston: bodies.Piston, bore: float) -> float:
     """Return how far from the shaft liners of other banks leave room for this one."""
     low = 0.0
     for other in machine.pistons.values():

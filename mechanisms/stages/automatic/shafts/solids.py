@@ -12,6 +12,7 @@ import numpy as np
 from mechanisms.stages.automatic.assembly import kernel_refusals, materials
 from mechanisms.stages.automatic.layout.plan import free_name
 from mechanisms.stages.automatic.layout.planar import convex_hull
+from mechanisms.stages.automatic.shafts import link_solids
 from mechanisms.stages.automatic.shafts.along import Along
 from mechanisms.stages.automatic.shafts.bearings import bore_of
 from mechanisms.stages.automatic.shafts.bodies import (
@@ -31,18 +32,6 @@ from mechanisms.stages.automatic.shafts.cylinder_solids import (
     wrist_pin_shape,
 )
 from mechanisms.stages.automatic.shafts.cylinders import WRIST_PIN
-from mechanisms.stages.automatic.shafts.link_solids import (
-    Cut,
-    Fork,
-    axle_solids,
-    bearer_solids,
-    carrier_shape,
-    cut_up,
-    knuckle_pin,
-    plate_shape,
-    rod_pieces,
-    splits_at,
-)
 from mechanisms.stages.automatic.shafts.passing import banks
 from mechanisms.stages.automatic.shafts.rams import guide_solids, ram_solids
 from mechanisms.stages.automatic.shafts.shaft_solids import balanced_webs, built_up, loads, shaft_solid
@@ -82,7 +71,7 @@ def solids(
         with kernel_refusals(own.m.name, f"the parts of '{body}'"):
             made[body] = _of_body(own, body, named[body], body in wished, made)
     for axle in own.axles:
-        made[axle.holder] += axle_solids(axle, own.machine, own.thickness, own.sizes, own.low)
+        made[axle.holder] += link_solids.axle_solids(axle, own.machine, own.thickness, own.sizes, own.low)
     return _named(made, own.sizes.tolerance)
 
 
@@ -142,7 +131,7 @@ def _on_ground(own: Along) -> list[Solid]:
     pieces = [solid for bank in every for solid in bank_solids(bank, every, own.fins, start, [*own.valves.values()])]
     pieces += [solid for ram in own.rams.values() for solid in guide_solids(ram, start)]
     for k, bearer in enumerate(own.bearers):
-        pieces += bearer_solids(bearer, start, "" if len(own.bearers) == 1 else f"_{k + 1}")
+        pieces += link_solids.bearer_solids(bearer, start, "" if len(own.bearers) == 1 else f"_{k + 1}")
     return pieces
 
 
@@ -176,7 +165,7 @@ def _is_closed(own: Along, body: str) -> bool:
     main = None if link is None else rod_foot(own.machine, link)
     if link is None or main is None or not is_carrier(own.machine, link):
         return False
-    return splits_at(link, main.x, main.y) is None
+    return link_solids.splits_at(link, main.x, main.y) is None
 
 
 def _piston(own: Along, body: str, material: str) -> list[Solid]:
@@ -211,18 +200,20 @@ def _link(own: Along, link: Link, material: str, is_wished: bool) -> list[Solid]
     big = next((k for k, eye in enumerate(eyes) if main is not None and math.dist(eye[:2], (main.x, main.y)) < 0.01), 0)
     if bore is not None and main is not None and is_carrier(own.machine, link):
         gap, knuckled = own.measures.axial, knuckle_eyes(own.machine, link)
-        fork = Fork(thickness, flange(thickness, gap), own.measures.shank(link, own.thickness), bore)
+        fork = link_solids.Fork(thickness, flange(thickness, gap), own.measures.shank(link, own.thickness), bore)
         small = next(eye for eye, of in zip(eyes, _distinct(link), strict=True) if of.on in own.cylinders)
         pins = [(eye.x, eye.y) for eye in knuckled]
-        pieces = cut_up(carrier_shape((main.x, main.y), eyes[big][2].bore, small, pins, fork), cuts)
+        pieces = link_solids.cut_up(
+            link_solids.carrier_shape((main.x, main.y), eyes[big][2].bore, small, pins, fork), cuts
+        )
         for eye in knuckled:
-            pin = placed(knuckle_pin((eye.x, eye.y), thickness, bore), z=bottom)
+            pin = placed(link_solids.knuckle_pin((eye.x, eye.y), thickness, bore), z=bottom)
             knuckle_pins.append(Solid(f"pin_{eye.joint}", pin, "brass", 1))
     elif bore is not None and len(eyes) == 2 and main is not None:
-        pieces = rod_pieces((eyes[big], eyes[1 - big]), thickness, bore, cuts)
+        pieces = link_solids.rod_pieces((eyes[big], eyes[1 - big]), thickness, bore, cuts)
     else:
         there = eyes or [(0.0, 0.0, Eye(own.sizes.eye * own.measures.unit, 0.0))]
-        pieces = cut_up(plate_shape(link, there, thickness, own.measures.unit), cuts)
+        pieces = link_solids.cut_up(link_solids.plate_shape(link, there, thickness, own.measures.unit), cuts)
     if bore is not None and not is_wished:
         material = ROD
     names = [link.body, *(f"cap_{link.body}" for _ in cuts)]
@@ -230,15 +221,15 @@ def _link(own: Along, link: Link, material: str, is_wished: bool) -> list[Solid]
     return [made[0], *knuckle_pins, *made[1:]]
 
 
-def _cuts(own: Along, link: Link, eyes: Sequence[tuple[float, float, Eye]]) -> tuple[Cut, ...]:
+def _cuts(own: Along, link: Link, eyes: Sequence[tuple[float, float, Eye]]) -> tuple[link_solids.Cut, ...]:
     """Return where a link is split: at crank pins, where all else of it lies on one side."""
-    cuts = list[Cut]()
+    cuts = list[link_solids.Cut]()
     reach = max((math.hypot(a.x - b.x, a.y - b.y) for a in link.eyes for b in link.eyes), default=0.0)
     for k, on in enumerate(link.eyes):
         if on.on not in own.machine.shafts:
             continue
         x, y, eye = eyes[k]
-        towards = splits_at(link, x, y)
+        towards = link_solids.splits_at(link, x, y)
         if towards is not None:
             cuts.append(((x, y), towards, reach + 2 * eye.radius))
     return tuple(cuts)

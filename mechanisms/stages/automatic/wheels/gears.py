@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 
@@ -16,10 +17,11 @@ from mbsd.model.joint import Joint
 from mbsd.model.teeth import with_radii
 from mechanisms.stages.automatic.layout.items import Item, Reach
 from mechanisms.stages.automatic.layout.layout import Feature, Layout
-from mechanisms.stages.automatic.layout.plan import FORCE_KINDS, force_kind, kind
+from mechanisms.stages.automatic.layout.plan import FORCE_KINDS, contact_kind, force_kind, kind
 from mechanisms.stages.automatic.layout.sizes import Extent, extent
 from mechanisms.stages.automatic.pins.pins import SAME
 from mechanisms.stages.automatic.wheels import racks, wheels
+from mechanisms.stages.automatic.wheels.cables import SLACK_SPANS, SPANS, cables
 from mechanisms.stages.automatic.wheels.pulleys import BELTS, Belt, Pulley, belts
 from mechanisms.stages.automatic.wheels.racks import Rack, add_way
 from mechanisms.stages.automatic.wheels.wheels import LEAST_ON_TUBE, Wheel
@@ -310,6 +312,8 @@ def extent_of_rack(joint: Joint, solution: Solution) -> Extent:
 
 
 @kind(BELTS)
+@kind(SPANS)
+@contact_kind(SLACK_SPANS)
 @kind(RACKS)
 @kind(GEARS)
 @force_kind(PLAYING)
@@ -337,13 +341,14 @@ def gather(m: Mechanism, things: Sequence[Joint | Force], layout: Layout) -> lis
         second.mates.append(first)
         meshes.append(Mesh(first, second, joint))
     in_phase(m, [*known, *bars], meshes, layout)
-    bands = belts(m, layout)
-    pulleys = [pulley for belt in bands for pulley in belt.pulleys]
+    bands, ropes = belts(m, layout), cables(m, layout)
+    pulleys = [pulley for line in (*bands, *ropes) for pulley in line.pulleys]
     enter([*known, *pulleys], layout)
     for rack in bars:
         layout.extra.append(rack.layer)
     layout.meshing += [*(belt.pulleys for belt in bands), *((mesh.first, mesh.second) for mesh in meshes)]
-    return [*known, *bars, *pulleys, *bands]
+    layout.meshing += [pair for rope in ropes for pair in pairwise(rope.pulleys)]
+    return [*known, *bars, *pulleys, *bands, *(feature for rope in ropes for feature in (*rope.studs(layout), rope))]
 
 
 def _toothed(m: Mechanism, layout: Layout) -> list[Joint | Force]:

@@ -15,7 +15,7 @@ from render.film.story.frame import Caption, Over, Picture, Shot, shown_in
 from render.film.story.ramps import Ramp, eased
 from render.film.story.scenery import Scenery, Stand, between, focused, raised
 from render.film.story.words import plain
-from shared.contract.quantity import written
+from render.insights.stops import carried
 from shared.contract.shot import Section
 from shared.stage.errors import UserError
 
@@ -65,7 +65,7 @@ def macro(scenery: Scenery) -> Shot | None:
 
 def _busy(scenery: Scenery) -> float:
     """Return when what the story is about happens (s)."""
-    return scenery.reasons[0].time if scenery.reasons else scenery.film.clock.start
+    return scenery.reasons[0].start if scenery.reasons else scenery.film.clock.start
 
 
 def _joint(scenery: Scenery) -> str | None:
@@ -76,7 +76,7 @@ def _joint(scenery: Scenery) -> str | None:
     if not joints:
         return None
     tops = {name: _height(scenery, name) for name in joints}
-    first = scenery.reasons[0].joint if scenery.reasons else ""
+    first = carried(scenery.film.motion, scenery.reasons[0].start)[0] if scenery.reasons else ""
     highest = max(tops.values())
     stack = highest - min(tops.values())
 
@@ -132,11 +132,11 @@ def _aimed(scenery: Scenery, stand: Stand, place: tuple[float, float, float]) ->
 
 
 def _caption(scenery: Scenery, name: str) -> str:
-    joint = scenery.film.motion.joints[name]
-    most = float(np.hypot(joint.fx, joint.fy).max())
-    if most <= 0:
-        return scenery.say("joint", name=plain(name))
-    return scenery.say("carries", name=plain(name), amount=written(most, "N"))
+    """Return what there is to say of a joint and is not the story's stop or its motion; else its name."""
+    said = {scenery.reasons[0].template if scenery.reasons else "", scenery.of_motion and scenery.of_motion.template}
+    own = [each for each in (*scenery.told, *scenery.reasons) if name in each.joints and each.template not in said]
+    told = next((each for each in own if scenery.fits(each)), None)
+    return scenery.say("joint", name=plain(name)) if told is None else scenery.sentence(told)
 
 
 # The section: the machine in motion as its shot cuts it open; the camera walks a little to the side of the cut.

@@ -60,7 +60,7 @@ def _lively(scenery: Scenery, start: float, end: float, seconds: float) -> Warp:
         happens += np.minimum(steps, np.quantile(steps, 0.98))
     width = 0.02 * (end - start)
     for reason in scenery.reasons[:1]:
-        happens += happens.max() * np.exp(-0.5 * ((time - reason.time) / width) ** 2)
+        happens += happens.max() * np.exp(-0.5 * ((time - reason.start) / width) ** 2)
     return warped(scenery.film.motion.time, happens, start, end, seconds)
 
 
@@ -87,9 +87,9 @@ def _shot(scenery: Scenery, passes: Ramp | Warp, seconds: float, again: float = 
 
 
 def _caption(scenery: Scenery) -> str:
-    clock, say = scenery.film.clock, scenery.say
-    span = clock.end - clock.start
-    return say("repeats" if clock.repeats else "lasts", time=f"{figures(span, 3)} s")
+    told = scenery.of_motion
+    span = scenery.film.clock.end - scenery.film.clock.start
+    return scenery.say("lasts", time=f"{figures(span, 3)} s") if told is None else scenery.sentence(told)
 
 
 # The last shot: the machine comes to the pose of its poster and rests there, under its name.

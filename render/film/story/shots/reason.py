@@ -7,15 +7,17 @@ import math
 import numpy as np
 
 from render.film.framing import project
-from render.film.story.frame import Caption, Note, Over, Picture, Reason, Shot, shown_in
+from render.film.story.frame import Caption, Note, Over, Picture, Shot, shown_in
 from render.film.story.ramps import Ramp, eased, into
 from render.film.story.scenery import Scenery, Stand, between
 from render.film.story.words import plain
-from shared.contract.quantity import figures, written
+from render.insights.insight import in_words
+from shared.contract.quantity import figures
 from shared.contract.signals import SIGNALS
 
 # Numbers beside the largest arrows of a picture that stands still.
 
+EFFORTS = ("N", "N m")
 MOST = 3
 LEAST = 0.12
 """Arrows that are shorter than this part of the longest have no number."""
@@ -35,10 +37,12 @@ def notes(scenery: Scenery, picture: Picture) -> tuple[Note, ...]:
     lengths = [math.dist(tail, tip) for tail, tip in rows]
     longest = max(lengths, default=0.0)
     out: list[Note] = []
+    what = scenery.reasons[0] if scenery.reasons else None
     for (middle, sweep), torque in zip(state.arcs, film.arcs.torques, strict=True):
-        if scenery.reasons and torque.name.startswith(f"{scenery.reasons[0].name} on ") and sweep and not out:
+        name = torque.name.partition(" on ")[0]
+        if what is not None and name in what.joints and what.unit in EFFORTS and sweep and not out:
             x, y = project(picture.camera, np.array(middle), wide, high)[0]
-            words = f"{plain(scenery.reasons[0].name)}  {scenery.reasons[0].amount}"
+            words = f"{plain(name)}  {in_words(what.number, what.unit)}"
             out.append(Note(float(x / wide), float(y / high), 0.0, -1.6, words, SIGNALS["torques"].dark))
     for k in sorted(range(len(rows)), key=lambda k: -lengths[k]):
         if lengths[k] < LEAST * longest or not longest or len(out) == MOST:
@@ -48,7 +52,7 @@ def notes(scenery: Scenery, picture: Picture) -> tuple[Note, ...]:
             continue
         way = (tip - tail) / max(float(np.hypot(*(tip - tail))), 1e-9)
         vector = film.arrows.vectors[k]
-        words = f"{plain(vector.name.partition(' of ')[2] or vector.name)}  {written(sizes[k], vector.unit)}"
+        words = f"{plain(vector.name.partition(' of ')[2] or vector.name)}  {in_words(sizes[k], vector.unit)}"
         colour = SIGNALS[vector.row].dark
         out.append(Note(float(tip[0] / wide), float(tip[1] / high), float(way[0]), float(way[1]), words, colour))
     return tuple(out)
@@ -75,7 +79,7 @@ def reason(scenery: Scenery) -> Shot | None:
     what, clock = scenery.reasons[0], scenery.film.clock
     goes, slows, grows, on = (scenery.moving(seconds) for seconds in (GOES, SLOWS, GROWS, ON))
     earliest = -1e300 if clock.repeats else clock.start
-    ramp = into(what.time, earliest, clock.rate, goes, slows)
+    ramp = into(what.start, earliest, clock.rate, goes, slows)
     stop = goes + slows
     begins = stop + grows + STANDS
     after = Ramp(ramp.time_at(stop), ((on, 0.0, clock.rate),))
@@ -90,7 +94,7 @@ def reason(scenery: Scenery) -> Shot | None:
         grown = min(eased((s - stop) / grows), eased((begins + GOES_AWAY - s) / GOES_AWAY)) if s >= stop else 0.0
         return scenery.picture(between(wide, near, way), model(s), forces=True, grown=round(grown, 6), hidden="trails")
 
-    text = scenery.wishes.caption or sentence(scenery, what)
+    text = scenery.wishes.caption or scenery.sentence(what)
     labels = notes(scenery, picture(begins - 0.1)) if scenery.forces is not None else ()
 
     def over(s: float) -> Over:
@@ -102,15 +106,6 @@ def reason(scenery: Scenery) -> Shot | None:
 
     captions = (Caption(stop - 0.3, begins + 0.3, text),)
     return Shot("reason", scenery.say("reason"), seconds, picture, over, model, captions)
-
-
-def sentence(scenery: Scenery, what: Reason) -> str:
-    """Return a caption in plain words."""
-    with_force = what.kind in ("turns_back", "event") and what.joint
-    key = f"{what.kind}_force" if with_force else what.kind
-    return scenery.say(
-        key, name=plain(what.name), amount=what.amount, force=what.force, joint=plain(what.joint)
-    )  # fmt: skip
 
 
 def _stands(scenery: Scenery, time: float) -> tuple[Stand, Stand]:
@@ -156,14 +151,14 @@ def loop(scenery: Scenery, seconds: float) -> Shot:
         stands = min(LOOP_STANDS * seconds, LONGEST)
         slows, part = min(LOOP_SLOWS, 0.12 * seconds), MIDDLE
         if not clock.repeats:  # it stops at its event, however near that is to the start or the end
-            part = min(max((what.time - clock.start) / period, 0.0), 1.0)
+            part = min(max((what.start - clock.start) / period, 0.0), 1.0)
             slows = min(slows, 2 * min(part, 1 - part) * (seconds - LOOP_GROWS - stands - slows))
         moves = seconds - LOOP_GROWS - stands - slows  # at the whole rate; slowing and speeding up go half as far
         turns = max(1, round(clock.rate * moves / period)) if clock.repeats else 1
         rate = turns * period / moves
         before = max(part * moves - slows / 2, 0.0)
         after = max(moves - before - slows, 0.0)
-        start = what.time - rate * (before + slows / 2) if clock.repeats else clock.start
+        start = what.start - rate * (before + slows / 2) if clock.repeats else clock.start
         ramp = Ramp(
             start,
             (
@@ -179,10 +174,11 @@ def loop(scenery: Scenery, seconds: float) -> Shot:
         grown = min(eased((s - stop) / LOOP_GROWS), eased((begins + LOOP_GOES - s) / LOOP_GOES)) if s >= stop else 0.0
         return scenery.picture(stand, ramp.time_at(s), forces=True, grown=round(grown, 6))
 
-    text = "" if what is None else scenery.wishes.caption or sentence(scenery, what)
+    text = "" if what is None else scenery.wishes.caption or scenery.sentence(what)
     name = plain(scenery.film.motion.mechanism.partition("-")[0])
     name = f"{name[:1].upper()}{name[1:]}. "
-    name += scenery.say("repeats" if clock.repeats else "lasts", time=f"{figures(period, 3)} s")
+    told = scenery.of_motion
+    name += scenery.say("lasts", time=f"{figures(period, 3)} s") if told is None else scenery.sentence(told)
     labels = notes(scenery, picture(begins - 0.05)) if scenery.forces is not None and what is not None else ()
     rows = [Caption(0.3, max(stop - 0.5, 0.8), name), Caption(stop - 0.3, min(begins + 0.5, seconds), text)]
     captions = tuple(row for row in rows if row.text and row.end - row.start > 0.6)

@@ -7,45 +7,14 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from tests.studio.night.torture.cluster.hostile import KINDS
-from tests.studio.night.torture.cluster.studies import scheduler_killed, study_again
+from tests.studio.night.torture import hits, workers
 from tests.studio.night.torture.damage import cut, flipped, gone, no_text
 from tests.studio.night.torture.fetching import fetch_again, fetch_killed
 from tests.studio.night.torture.following import live_page_hit, wrong_pages
-from tests.studio.night.torture.hits import (
-    Hit,
-    asked_to_stop,
-    clock_set_back,
-    damaged,
-    film,
-    folder_for_lock,
-    full_disk,
-    limited,
-    pictures,
-    read_only,
-    records,
-    results,
-    room_again,
-    second_run,
-    signal_to,
-    stop_for_a_while,
-    swapped,
-    writable,
-)
+from tests.studio.night.torture.hostile import KINDS
 from tests.studio.night.torture.project import COORDINATOR, Project
 from tests.studio.night.torture.stage import MODULE
-from tests.studio.night.torture.workers import (
-    Workers,
-    admitted,
-    disk_of_one,
-    expelled,
-    healed,
-    is_there,
-    limit_one,
-    no_scheduler,
-    scheduler_again,
-    signal_to_one,
-)
+from tests.studio.night.torture.studies import scheduler_killed, study_again
 
 
 @dataclass(frozen=True)
@@ -53,7 +22,7 @@ class Fault:
     """One kind of fault."""
 
     name: str
-    hit: Hit
+    hit: hits.Hit
     undo: Callable[[Project], object] | None = None
     """Remedy of a user before the next run."""
     hits_film: bool = False
@@ -82,65 +51,73 @@ MAKE_TELLS = [INT, HUP] if sys.platform == "linux" else []
 """Signals that make keeps to itself; only Linux shows that it got them."""
 FAULTS = [
     *(
-        Fault(f"{what.name} to make", signal_to("make", what), during=FILM, target="run-all")
+        Fault(f"{what.name} to make", hits.signal_to("make", what), during=FILM, target="run-all")
         for what in (TERM, KILL, *MAKE_TELLS)
     ),
-    *(Fault(f"{what.name} to the coordinator", signal_to(COORDINATOR, what)) for what in (TERM, INT, HUP, KILL)),
-    *(Fault(f"{what.name} to a stage", signal_to(STAGE, what), during=STAGE) for what in (TERM, INT, KILL)),
-    *(Fault(f"{what.name} to Blender", signal_to(BLENDER, what), during=BLENDER) for what in (TERM, KILL, SEGV)),
-    Fault("Blender stopped", signal_to(BLENDER, STOP), during=BLENDER),
-    Fault("a stage stopped for a while", stop_for_a_while, during=FILM),
-    Fault("SIGKILL to ffmpeg", signal_to("ffmpeg", KILL), during="ffmpeg"),
-    Fault("a read-only disk", read_only, undo=writable, during=MAKE, target="run-all"),
-    Fault("make stop", asked_to_stop),
-    Fault("a clock that was set back", clock_set_back),
-    Fault("a folder in place of a lock", folder_for_lock),
-    Fault("two runs at once", second_run),
+    *(Fault(f"{what.name} to the coordinator", hits.signal_to(COORDINATOR, what)) for what in (TERM, INT, HUP, KILL)),
+    *(Fault(f"{what.name} to a stage", hits.signal_to(STAGE, what), during=STAGE) for what in (TERM, INT, KILL)),
+    *(Fault(f"{what.name} to Blender", hits.signal_to(BLENDER, what), during=BLENDER) for what in (TERM, KILL, SEGV)),
+    Fault("Blender stopped", hits.signal_to(BLENDER, STOP), during=BLENDER),
+    Fault("a stage stopped for a while", hits.stop_for_a_while, during=FILM),
+    Fault("SIGKILL to ffmpeg", hits.signal_to("ffmpeg", KILL), during="ffmpeg"),
+    Fault("a read-only disk", hits.read_only, undo=hits.writable, during=MAKE, target="run-all"),
+    Fault("make stop", hits.asked_to_stop),
+    Fault("a clock that was set back", hits.clock_set_back),
+    Fault("a folder in place of a lock", hits.folder_for_lock),
+    Fault("two runs at once", hits.second_run),
     Fault("processes of a live page hit while it follows", live_page_hit, follow=wrong_pages),
-    Fault("a picture cut", damaged(pictures, cut), destroys=1),
-    Fault("a picture with a flipped byte", damaged(pictures, flipped), destroys=1),
-    Fault("a picture deleted", damaged(pictures, gone), destroys=1),
-    Fault("two pictures swapped", swapped, destroys=2),
-    Fault("no text in a stamp, timing.json or frames.json", damaged(records, no_text)),
-    Fault("a stamp, timing.json or frames.json cut", damaged(records, cut)),
-    Fault("no text in data.json, parts.json or a solid", damaged(results, no_text)),
-    Fault("a result or stamp with a flipped byte", damaged(results, flipped)),
-    Fault("the film cut", damaged(film, cut), hits_film=True),
-    Fault("the film with a flipped byte", damaged(film, flipped), hits_film=True),
+    Fault("a picture cut", hits.damaged(hits.pictures, cut), destroys=1),
+    Fault("a picture with a flipped byte", hits.damaged(hits.pictures, flipped), destroys=1),
+    Fault("a picture deleted", hits.damaged(hits.pictures, gone), destroys=1),
+    Fault("two pictures swapped", hits.swapped, destroys=2),
+    Fault("no text in a stamp, timing.json or frames.json", hits.damaged(hits.records, no_text)),
+    Fault("a stamp, timing.json or frames.json cut", hits.damaged(hits.records, cut)),
+    Fault("no text in data.json, parts.json or a solid", hits.damaged(hits.results, no_text)),
+    Fault("a result or stamp with a flipped byte", hits.damaged(hits.results, flipped)),
+    Fault("the film cut", hits.damaged(hits.film, cut), hits_film=True),
+    Fault("the film with a flipped byte", hits.damaged(hits.film, flipped), hits_film=True),
 ]
 if sys.platform == "linux":
     FAULTS += [
-        Fault("no room for Blender's files", limited(BLENDER, "files"), during=BLENDER),
-        Fault("no room for a stage's files", limited(STAGE, "files"), during=STAGE),
-        Fault("no memory for Blender", limited(BLENDER, "memory"), during=BLENDER),
-        Fault("no memory for a stage", limited(STAGE, "memory"), during=STAGE),
+        Fault("no room for Blender's files", hits.limited(BLENDER, "files"), during=BLENDER),
+        Fault("no room for a stage's files", hits.limited(STAGE, "files"), during=STAGE),
+        Fault("no memory for Blender", hits.limited(BLENDER, "memory"), during=BLENDER),
+        Fault("no memory for a stage", hits.limited(STAGE, "memory"), during=STAGE),
     ]
-BACKGROUND = [Fault("SIGKILL to tmux", signal_to(TMUX, KILL), during=STAGE, target="overnight")]
+BACKGROUND = [Fault("SIGKILL to tmux", hits.signal_to(TMUX, KILL), during=STAGE, target="overnight")]
 """Only where there is tmux."""
 FETCH = [Fault("films fetched meanwhile, killed and fetched again", fetch_killed, follow=fetch_again)]
 """Only where there are rsync, ssh and sshd."""
 CLUSTER = [
     *(
-        Fault(f"{what.name} to {whom}", signal_to_one(pick, what), undo=healed, during=FILM, cluster=True)
-        for whom, pick in (("a worker", Workers.workers), ("a worker's Blender", Workers.blenders))
+        Fault(
+            f"{what.name} to {whom}", workers.signal_to_one(pick, what), undo=workers.healed, during=FILM, cluster=True
+        )
+        for whom, pick in (("a worker", workers.Workers.workers), ("a worker's Blender", workers.Workers.blenders))
         for what in (KILL, STOP)
     ),
-    Fault("no room for a worker's files", limit_one(Workers.workers, "files"), undo=healed, during=FILM, cluster=True),
+    Fault(
+        "no room for a worker's files",
+        workers.limit_one(workers.Workers.workers, "files"),
+        undo=workers.healed,
+        during=FILM,
+        cluster=True,
+    ),
     *(
         Fault(
             f"no {what} for a worker's Blender",
-            limit_one(Workers.blenders, kind),
-            undo=healed,
+            workers.limit_one(workers.Workers.blenders, kind),
+            undo=workers.healed,
             during=FILM,
             cluster=True,
         )
         for what, kind in (("room for the files", "files"), ("memory", "memory"))
     ),
-    Fault("SIGKILL to the scheduler", no_scheduler, undo=scheduler_again, during=FILM, cluster=True),
+    Fault("SIGKILL to the scheduler", workers.no_scheduler, undo=workers.scheduler_again, during=FILM, cluster=True),
     Fault(
         "SIGKILL to the scheduler during a study",
         scheduler_killed,
-        undo=scheduler_again,
+        undo=workers.scheduler_again,
         during=FILM,
         cluster=True,
         follow=study_again,
@@ -148,9 +125,9 @@ CLUSTER = [
     *(
         Fault(
             f"a worker that sends {kind}",
-            is_there,
-            before=admitted(kind),
-            undo=expelled,
+            workers.is_there,
+            before=workers.admitted(kind),
+            undo=workers.expelled,
             during=FILM,
             cluster=True,
             ends_well=True,
@@ -159,10 +136,10 @@ CLUSTER = [
     ),
 ]
 """Only where there are a scheduler and workers, on Linux."""
-DISK_OF_ONE = [Fault("a full disk of a worker", disk_of_one, undo=healed, during=FILM, cluster=True)]
+DISK_OF_ONE = [Fault("a full disk of a worker", workers.disk_of_one, undo=workers.healed, during=FILM, cluster=True)]
 """Only where one of the workers has a small disk of its own."""
 FULL = [
-    *[Fault("a full disk", full_disk, undo=room_again)] * 2,
-    *[Fault("a disk that gets full under Blender", full_disk, undo=room_again, during=BLENDER)] * 3,
+    *[Fault("a full disk", hits.full_disk, undo=hits.room_again)] * 2,
+    *[Fault("a disk that gets full under Blender", hits.full_disk, undo=hits.room_again, during=BLENDER)] * 3,
 ]
 """Only where a small disk could be mounted; more likely than each of the others."""

@@ -8,6 +8,7 @@ import signal
 import stat
 import subprocess
 import sys
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -16,7 +17,6 @@ from shared.contract.shot import Camera, Shot
 from shared.stage.paths import ROOT, Out
 from shared.stage.signals import end_with_parent
 from studio.night import runs
-from tests.studio.night.torture.processes import Process, processes
 from tests.studio.night.torture.stage import RENDERED
 from tests.studio.night.torture.workers import Workers
 
@@ -193,3 +193,33 @@ def _of_a_user() -> None:
     """In the process of a command: it takes Ctrl-C, as in a terminal, and ends with the process that started it."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     end_with_parent(signal.SIGTERM)
+
+
+# Processes as ps lists them, on Linux and on a Mac.
+
+
+@dataclass(frozen=True)
+class Process:
+    """One process."""
+
+    number: int
+    group: int
+    state: str
+    arguments: str
+
+    def send(self, what: signal.Signals) -> None:
+        """Send a signal, if the process is still there."""
+        with suppress(ProcessLookupError):
+            os.kill(self.number, what)
+
+
+def processes() -> list[Process]:
+    """All that run now; those that have ended and were not yet collected do not count."""
+    command = ["ps", "-axwwo", "pid=,pgid=,stat=,args="]
+    listing = subprocess.run(command, capture_output=True, text=True, errors="replace", check=True).stdout
+    alive = []
+    for line in listing.splitlines():
+        fields = line.split(maxsplit=3)
+        if len(fields) == 4 and not fields[2].startswith("Z"):
+            alive.append(Process(int(fields[0]), int(fields[1]), fields[2], fields[3]))
+    return alive

@@ -91,7 +91,7 @@ class Workers:
         command = [
             *worker_command(self.address, "127.0.0.1", "hostile", folder),
             "--preload",
-            "tests.studio.night.torture.cluster.hostile",
+            "tests.studio.night.torture.hostile",
         ]
         self.hostile = self._called(command, "hostile", HOSTILE=kind)
         self._wait_for_workers(1)

@@ -41,7 +41,7 @@ export class Designs {
     const { app } = this;
     if (!Object.keys(this.values).length) return void app.update({ ...this.own, other: null });
     const patch = this.between();
-    patch.marks = [];
+    patch.marks = patch.insights = [];
     patch.trails = this.own.trails;
     patch.clearance = patch.frame = patch.couple = null;
     patch.other = null;

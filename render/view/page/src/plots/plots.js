@@ -22,9 +22,10 @@ export class Plots {
     this.spectra = [];
     this.choice = el("select", { class: "choice", "aria-label": "Curves of", onchange: () => app.store.set({ selected: this.choice.value ? this.things[Number(this.choice.value)] : null }) });
     const save = el("button", { type: "button", class: "round", title: "Save these curves as CSV (s)", "aria-label": "Save these curves as CSV", onclick: () => this.save() }, icon("save"));
+    this.insights = el("ul", { class: "insights", "aria-label": "What it shows" });
     this.marks = el("p", { class: "happens" });
     this.list = el("div", { class: "charts" });
-    app.parts.side.append(el("div", { class: "choose" }, this.choice, save), this.marks, this.list);
+    app.parts.side.append(el("div", { class: "choose" }, this.choice, save), this.insights, this.marks, this.list);
     app.store.on(["selected", "theme"], () => this.update());
     app.themes.changed = () => this.update();
     new ResizeObserver(() => this.resize()).observe(this.list);
@@ -48,6 +49,16 @@ export class Plots {
     }
     this.key = key;
     this.happens(this.all);
+    this.tells();
+  }
+
+  /** What the whole machine shows, as buttons that go to its time. */
+  tells() {
+    const { payload, store } = this.app, list = store.state.selected ? [] : payload.insights ?? [];
+    this.insights.replaceChildren(...list.map(({ time, words }) => el("li", {}, el("button", {
+      type: "button", onclick: () => store.set({ playing: false, time }),
+    }, words))));
+    this.insights.hidden = !list.length;
   }
 
   /** What happens when, as buttons that go there; of many the first ones, until all are asked for. */

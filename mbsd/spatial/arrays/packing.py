@@ -1,0 +1,213 @@
+"""A mechanism in space as arrays (System), with the names to which rows and columns belong."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from mbsd.base.arguments import law_of
+from mbsd.model.laws import Motion
+from mbsd.spatial.arrays.tables import Tables
+from mbsd.spatial.equations.evaluation import measure
+from mbsd.spatial.equations.system import System, Workspace, workspace_for
+from mbsd.spatial.model.body import Body, Marker
+from mbsd.spatial.model.joint import Joint
+from mbsd.spatial.model.mechanism import Model
+from mbsd.spatial.model.rotation import euler_parameters, rotation_matrix
+from mbsd.spatial.model.rows import Row, along, turn
+
+
+@dataclass
+class Packed:
+    """Arrays and names of a mechanism."""
+
+    name: str
+    bodies: list[Body]
+    """Ground first."""
+    joints: list[Joint]
+    """Joints, then drivers, in the order of their rows."""
+    motions: list[Motion]
+    """Laws of the drivers."""
+    row_joint: np.ndarray
+    """(m,) number of the joint or driver of each row."""
+    row_unit: list[str]
+    """Unit of each residual: m or rad."""
+    driver_rows: int
+    """First row of the drivers."""
+    system: System
+    ws: Workspace
+    size: float
+    """A length of the mechanism (m)."""
+    watched: list[str]
+    """Joints that turn, by whose number ``turn_angles`` gives theirs."""
+    forces: Sequence[Any] = field(default=())
+
+    @property
+    def body_names(self) -> list[str]:
+        """Names of the bodies, ground first."""
+        return [body.name for body in self.bodies]
+
+    @property
+    def drivers(self) -> list[Joint]:
+        """The drivers."""
+        return self.joints[len(self.joints) - len(self.motions) :]
+
+    @property
+    def driver_names(self) -> list[str]:
+        """Names of the drivers."""
+        return [driver.name for driver in self.drivers]
+
+    @property
+    def passive_joints(self) -> list[Joint]:
+        """Joints without drivers."""
+        return self.joints[: len(self.joints) - len(self.motions)]
+
+    @property
+    def freedoms(self) -> int:
+        """Velocities of the moving bodies."""
+        return 6 * (len(self.bodies) - 1)
+
+    @cached_property
+    def design(self) -> np.ndarray:
+        """Coordinates (3 + 7 n,) of the design pose."""
+        q = np.zeros(7 * len(self.bodies) - 4)
+        for b, body in enumerate(self.bodies[1:], 1):
+            q[7 * b - 4 : 7 * b - 1] = np.array(body.place) + body.rotation @ np.array(body.com)
+            q[7 * b - 1 : 7 * b + 3] = euler_parameters(body.rotation @ body.principal[1])
+        return q
+
+    @cached_property
+    def row_scale(self) -> np.ndarray:
+        """(m,) factors that make residuals dimensionless."""
+        return np.array([1.0 / self.size if unit == "m" else 1.0 for unit in self.row_unit])
+
+    @cached_property
+    def column_scale(self) -> np.ndarray:
+        """(6 n,) sizes of a unit of each velocity."""
+        return np.tile([self.size] * 3 + [1.0] * 3, len(self.bodies) - 1)
+
+    def drives(self, times: np.ndarray) -> np.ndarray:
+        """Return (T, drivers + 1, 3) values of the laws at times (T,) (s), the zero law first."""
+        out = np.zeros((len(times), len(self.motions) + 1, 3))
+        for k, (driver, motion) in enumerate(zip(self.drivers, self.motions, strict=True), 1):
+            with law_of(f"{self.name}: driver '{driver.name}'"):
+                out[:, k] = motion(times)
+        return out
+
+    def settle_laws(self, start: float, end: float) -> None:
+        """Make the laws ready for times ``start`` .. ``end`` (s)."""
+        for k, driver in enumerate(self.drivers):
+            assert driver.motion is not None
+            with law_of(f"{self.name}: driver '{driver.name}'"):
+                self.motions[k] = driver.motion.over(start, end)
+
+    def measured(self, q: np.ndarray, drive: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """Return Phi (m,) and J (m, 6 n) at q (3 + 7 n,) and laws (drivers + 1, 3), zero by default."""
+        measure(self.system, q, np.zeros((len(self.motions) + 1, 3)) if drive is None else drive, self.ws)
+        return self.ws.phi.copy(), self.spread(self.ws.jac)
+
+    def spread(self, compact: np.ndarray) -> np.ndarray:
+        """Return J (..., m, 6 n) of a compact one (..., m, 6 k), without ground."""
+        rows, columns, entries = self._entries
+        out = np.zeros((*compact.shape[:-1], self.freedoms))
+        out[..., rows, columns] = compact[..., rows, entries]
+        return out
+
+    @cached_property
+    def _entries(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Rows of the compact J's entries on moving bodies, their columns in J, and those in the compact J."""
+        rows, sides = np.nonzero(self.system.row_body > 0)
+        six = np.arange(6)
+        columns = 6 * (self.system.row_body[rows, sides] - 1)
+        return np.repeat(rows, 6), (columns[:, None] + six).ravel(), (6 * sides[:, None] + six).ravel()
+
+    def scaled(self, q: np.ndarray) -> np.ndarray:
+        """Return the dimensionless J (m, 6 n) at q (3 + 7 n,)."""
+        return self.measured(q)[1] * self.row_scale[:, None] * self.column_scale
+
+
+def moved(q: np.ndarray, delta: np.ndarray) -> np.ndarray:
+    """Return q (3 + 7 n,) moved by delta (6 n,): places, and small rotations in the world."""
+    out = q.copy()
+    step, pose = delta.reshape(-1, 6), out[3:].reshape(-1, 7)
+    pose[:, :3] += step[:, :3]
+    e, half = pose[:, 3:].copy(), 0.5 * step[:, 3:]
+    pose[:, 3] -= (half * e[:, 1:]).sum(axis=1)
+    pose[:, 4:] += e[:, :1] * half + np.cross(half, e[:, 1:])
+    pose[:, 3:] /= np.linalg.norm(pose[:, 3:], axis=1)[:, None]
+    return out
+
+
+def frames_of(body: Body, r: np.ndarray, e: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return places (T, 3) and rotations (T, 3, 3) of a body's frame from r (T, 3) and e (T, 4)."""
+    rotation = rotation_matrix(e) @ body.principal[1].T
+    return r - rotation @ np.array(body.com), rotation
+
+
+def pack(m: Model, extra: Sequence[tuple[Joint, Row]] = ()) -> Packed:
+    """Return the arrays of a mechanism; rows ``extra`` of joints come last and belong to no reaction."""
+    bodies = list(m.bodies.values())
+    joints = [*m.joints.values(), *m.drivers.values()]
+    tables = Tables(bodies)
+    row_joint, units, values, driven, wrench = [], [], [], [], []
+    driver_rows, passive = 0, len(m.joints)
+    rows = [(k, row, False) for k, joint in enumerate(joints) for row in joint.rows]
+    rows += [(joints.index(joint), row, True) for joint, row in extra]
+    for k, row, added in rows:
+        first, held = len(row_joint), k < passive and not added
+        if joints[k].motion is not None:
+            driven.append((first, k - passive + 1))
+        sides = tables.add(row, first)
+        column = 6 * sides.index(bodies.index(joints[k].j.body))
+        row_joint += [k] * row.count
+        units += [row.unit] * row.count
+        values += [row.value] * row.count
+        wrench += [(k if held else -1, column)] * row.count
+        driver_rows += row.count * held
+    arms = [tables.place(joint.j) for joint in joints[:passive]]
+    system = System(
+        mass=np.array([body.mass for body in bodies]),
+        inertia=np.array([body.principal[0] for body in bodies]),
+        gravity=np.array(m.gravity, float),
+        **tables.arrays(len(row_joint)),
+        value=np.array(values, float),
+        driven=np.array(driven, np.int64).reshape(-1, 2),
+        wrench=np.array(wrench, np.int64).reshape(-1, 2),
+        joint_arm=np.array(arms, np.int64),
+    )
+    motions = [driver.motion for driver in m.drivers.values() if driver.motion is not None]
+    return Packed(
+        name=m.name, bodies=bodies, joints=joints, motions=motions, row_joint=np.array(row_joint, np.int64),
+        row_unit=units, driver_rows=driver_rows, system=system, ws=workspace_for(system), size=size_of(m),
+        watched=[joint.name for joint in m.joints.values() if joint.kind.turns],
+    )  # fmt: skip
+
+
+def size_of(m: Model) -> float:
+    """Return a length of a mechanism (m): the mean extent of its places on bodies."""
+    extents = []
+    markers = [marker for joint in [*m.joints.values(), *m.drivers.values()] for marker in (joint.i, joint.j)]
+    for body in m.bodies.values():
+        places = np.array([marker.place for marker in markers if marker.body is body])
+        if len(places) > 1:
+            extents.append(float(np.linalg.norm(places.max(axis=0) - places.min(axis=0))))
+    lengths = [extent for extent in extents if extent > 0.0]
+    if lengths:
+        return float(np.mean(lengths))
+    far = [float(np.linalg.norm(marker.place)) for marker in markers]
+    return max([*far, 0.0]) or 1.0
+
+
+def start_row(joint: Joint) -> Row:
+    """Return the row that measures the turn or the slide of a joint."""
+    return turn(joint.i, joint.j) if joint.kind.turns else along(joint.i, "z", joint.j)
+
+
+def marker_motion(marker: Marker) -> tuple[np.ndarray, np.ndarray]:
+    """Return the place (3,) of a marker from the centre of mass, and its axes (3, 3), in principal axes."""
+    own = marker.body.principal[1].T
+    return own @ (np.array(marker.place) - np.array(marker.body.com)), own @ marker.axes

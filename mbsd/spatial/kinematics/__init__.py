@@ -1,0 +1,1 @@
+"""Driven motions in space: closed starts, mobility, Newton-Raphson along drivers, reactions."""

@@ -1,0 +1,61 @@
+"""A mechanism in space by name: bodies, joints, drivers, traces. Numbers in SI; angles in radians.
+
+    m = Mechanism("pendulum")
+    rod = m.rod("rod", (0, 0, 0), (0.5, 0, 0), mass=1.0)
+    m.revolute("A", m.ground, rod, at=(0, 0, 0), axis=(0, 1, 0))
+
+Every error of a model is raised here, by name, before anything is solved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mbsd.base.arguments import checked_methods
+from mbsd.base.quantity import counted
+from mbsd.spatial.model.body import Body, Marker
+from mbsd.spatial.model.building import Building
+from mbsd.spatial.model.joint import Joint
+from mbsd.spatial.model.mechanism import STANDARD_GRAVITY
+
+if TYPE_CHECKING:
+    from mbsd.results.views import Mobility
+    from mbsd.spatial.results.solution import Solution
+
+__all__ = ["STANDARD_GRAVITY", "Body", "Joint", "Marker", "Mechanism"]
+
+
+@checked_methods
+class Mechanism(Building):
+    """Bodies, joints, drivers, traced points by name. ``gravity`` in m/s^2; None turns it off."""
+
+    def mobility(self) -> Mobility:
+        """Return degrees of freedom, nominal and by rank, and redundant joints; it needs no drivers."""
+        from mbsd.spatial.kinematics.prepared import mobility
+
+        return mobility(self)
+
+    def sweep(
+        self,
+        duration: float | None = None,
+        steps: int = 360,
+        times: Sequence[float] | np.ndarray | None = None,
+    ) -> Solution:
+        """Solve the driven motion: poses, velocities, accelerations, reactions, driver efforts.
+
+        ``steps`` equal steps over ``duration`` seconds, both ends included; by default over the common period of the
+        laws of the drivers. ``times`` (s), rising, replaces both. Steps in between keep the motion on its assembly
+        branch. Raises AssemblyError where the joints do not close at the start, MobilityError where drivers and
+        freedoms do not match, SingularPoseError and BranchError where the motion cannot go on.
+        """
+        from mbsd.spatial.kinematics.sweep import sweep
+
+        return sweep(self, duration, steps, times)
+
+    def __repr__(self) -> str:
+        bodies, joints, drivers = len(self.bodies) - 1, len(self.joints), len(self.drivers)
+        said = ", ".join([counted(bodies, "body"), counted(joints, "joint"), counted(drivers, "driver")])
+        return f"<Mechanism {self.name} in space: {said}>"

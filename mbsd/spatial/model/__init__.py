@@ -1,0 +1,1 @@
+"""The model in space, by name: bodies at their poses, markers, rows, joints, drivers."""

@@ -1,0 +1,125 @@
+"""Entries of a model in space: joints and drivers with their arguments checked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such, shown
+from mbsd.model.laws import Motion
+from mbsd.model.laws.function import Function
+from mbsd.spatial.model.body import Direction, Fixing, Marker, Place, refuse_parallel
+from mbsd.spatial.model.joint import Joint, JointKind
+from mbsd.spatial.model.mechanism import Model, own_body
+from mbsd.spatial.model.rotation import frame
+
+Law = Motion | Callable[[float], float]
+
+
+def markers_given(
+    m: Model, name: str, first: Fixing, second: Fixing, at: Place | None, axes: np.ndarray | None
+) -> tuple[Marker, Marker]:
+    """Return the markers of a joint: given, or on two bodies at a place of the world in the design pose.
+
+    ``axes`` (3, 3) are those of the world that both get. Raises ModelError.
+    """
+    what = f"{m.name}: joint '{name}'"
+    given = [part for part in (first, second) if isinstance(part, Marker)]
+    if len(given) == 2:
+        if at is not None or axes is not None:
+            raise ModelError(f"{what} has markers and a place or an axis; a marker has both, so give one or the other")
+        i, j = (own_marker(m, what, marker) for marker in given)
+    elif given:
+        raise ModelError(f"{what} has a marker and a body; give two markers, or two bodies with at=")
+    else:
+        bodies = [own_body(m, part, what) for part in (first, second)]
+        if at is None:
+            raise ModelError(f"{what} needs a place: at=(x, y, z) of the world in the design pose (m)")
+        place, both = np.array(at, float), np.eye(3) if axes is None else axes
+        i, j = (body.world_marker(place, both) for body in bodies)
+    refuse_same(what, i, j)
+    return i, j
+
+
+def axes_given(what: str, axis: Direction | None, across: Direction | None = None) -> np.ndarray | None:
+    """Return axes (3, 3), z along ``axis``, x near ``across``; None without. Raises ModelError."""
+    if axis is None:
+        if across is not None:
+            raise ModelError(f"{what}: across is given without axis; give axis=, the direction of the joint")
+        return None
+    if across is not None:
+        refuse_parallel(what, "axis", axis, "across", across)
+    return frame(np.array(axis, float), None if across is None else np.array(across, float))
+
+
+def join_about(
+    m: Model, kind: JointKind, name: str, first: Fixing, second: Fixing, at: Place | None, axis: Direction | None,
+    across: Direction | None = None, **params: Any,
+) -> Joint:  # fmt: skip
+    """Enter a joint with an axis. Raises ModelError, also where two bodies come without one."""
+    axes = axes_given(f"{m.name}: joint '{name}'", axis, across)
+    if axes is None and not isinstance(first, Marker):
+        raise ModelError(f"{m.name}: joint '{name}' needs an axis: axis=(x, y, z), a direction of the world")
+    return enter(m, kind, name, *markers_given(m, name, first, second, at, axes), **params)
+
+
+def enter(
+    m: Model, kind: JointKind, name: str, i: Marker, j: Marker, law: Law | None = None, coupled: Sequence[Joint] = (),
+    **params: Any,
+) -> Joint:  # fmt: skip
+    """Enter a joint, or a driver with its law. Raises ModelError."""
+    m.refuse_name(name, "driver" if kind.driven else "joint")
+    motion = None
+    if kind.driven:
+        if not (isinstance(law, Motion) or callable(law)):
+            raise ModelError(
+                f"{m.name}: driver '{name}' needs a motion law, got {shown(law)}; "
+                "say constant_rate(...), harmonic(...), or a function of time"
+            )
+        motion = law if isinstance(law, Motion) else Function(law)
+    joint = Joint(kind, name, i, j, params, motion, tuple(coupled))
+    (m.drivers if kind.driven else m.joints)[name] = joint
+    return joint
+
+
+def own_marker(m: Model, what: str, marker: Marker) -> Marker:
+    """Return a marker on a body of this mechanism. Raises ModelError."""
+    own_body(m, marker.body, what)
+    return marker
+
+
+def own_joint(m: Model, joint: Joint | str, what: str) -> Joint:
+    """Return a joint of this mechanism, given as joint or name. Raises ModelError."""
+    name = joint.name if isinstance(joint, Joint) else joint
+    if not isinstance(name, str):
+        raise ModelError(f"{what} needs a joint, got {shown(joint)}")
+    if name not in m.joints:
+        raise ModelError(f"{what}: {no_such('joint', name, m.joints)}")
+    if isinstance(joint, Joint) and m.joints[name] is not joint:
+        raise ModelError(f"{what} uses joint '{name}' of another mechanism; take one of this one")
+    return m.joints[name]
+
+
+def turning_joint(m: Model, joint: Joint | str, what: str) -> Joint:
+    """Return a joint that turns about an axis. Raises ModelError."""
+    known = own_joint(m, joint, what)
+    if not known.kind.turns:
+        raise ModelError(f"{what}: joint '{known.name}' is {known.kind.name} and has no turn; name one that turns")
+    return known
+
+
+def sliding_joint(m: Model, joint: Joint | str, what: str) -> Joint:
+    """Return a joint that slides along an axis. Raises ModelError."""
+    known = own_joint(m, joint, what)
+    if not known.kind.slides:
+        raise ModelError(f"{what}: joint '{known.name}' is {known.kind.name} and has no slide; name one that slides")
+    return known
+
+
+def refuse_same(what: str, i: Marker, j: Marker) -> None:
+    """Raise ModelError where both markers are on one body."""
+    if i.body is j.body:
+        raise ModelError(f"{what} connects '{i.body.name}' with itself; give two bodies")

@@ -1,0 +1,1 @@
+"""Joints in space, one kind a file, each a list of rows."""

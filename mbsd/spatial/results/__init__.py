@@ -1,0 +1,1 @@
+"""Results in space, by name: bodies, joints, drivers, traced points, energy."""

@@ -1,0 +1,1 @@
+"""Mechanisms in space against published numbers, closed forms, and differences."""

@@ -1,1 +1,0 @@
-"""Companions of the workers of the rounds: a lying worker, and a study."""

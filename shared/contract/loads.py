@@ -39,7 +39,7 @@ class Shape(Strict, kw_only=True):
     crossed: bool = False
     """True if the belt is crossed."""
     clockwise: list[bool] = []
-    """Of a span of a cable: its turn about the first and the second marker, followed from one to the other."""
+    """Turn of a cable about the first and the second marker, followed from one to the other; of its spans alone."""
     slots: int | None = None
     """Slots of a Geneva wheel about the second marker; the pin is ``pin_radius`` from the first along its x axis."""
     pin_radius: Positive | None = None

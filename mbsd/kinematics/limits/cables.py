@@ -34,11 +34,11 @@ def refuse_left_wheels(packed: Packed, times: np.ndarray, q: np.ndarray) -> None
         if joint.kind.constraints == ("span",)
     ]
     first: tuple[float, Joint, Joint] | None = None
-    for one, i, middle in spans:
+    for span, i, middle in spans:
         for other, _, j in spans:
-            if other is one or not _on_one_wheel(one, other):
+            if other is span or not _on_one_wheel(span, other):
                 continue
-            wrap = _wrap(packed, q, (one, other), (i, middle, j))
+            wrap = _wrap(packed, q, (span, other), (i, middle, j))
             left = np.flatnonzero(wrap < -STRAIGHT)
             if not len(left):
                 continue
@@ -46,20 +46,20 @@ def refuse_left_wheels(packed: Packed, times: np.ndarray, q: np.ndarray) -> None
             share = 1.0 if at == 0 else wrap[at - 1] / (wrap[at - 1] - wrap[at])
             time = float(times[max(at - 1, 0)] + share * (times[at] - times[max(at - 1, 0)]))
             if first is None or time < first[0]:
-                first = time, one, other
+                first = time, span, other
     if first is None:
         return
-    time, one, other = first
+    time, span, other = first
     raise LimitError(
-        f"{packed.name}: at t = {time:.6g} s the cable leaves '{one.j.body.name}' between '{one.name}' and "
+        f"{packed.name}: at t = {time:.6g} s the cable leaves '{span.j.body.name}' between '{span.name}' and "
         f"'{other.name}': it is straight there. End the motion before, or move a wheel."
     )
 
 
-def _on_one_wheel(one: Joint, other: Joint) -> bool:
+def _on_one_wheel(span: Joint, other: Joint) -> bool:
     """Return True if a span ends on the wheel on which the other begins."""
-    before, after = signed_radii(one.params)[1], signed_radii(other.params)[0]
-    return before == after != 0.0 and _place(one.j) == _place(other.i)
+    before, after = signed_radii(span.params)[1], signed_radii(other.params)[0]
+    return before == after != 0.0 and _place(span.j) == _place(other.i)
 
 
 def _place(marker: Marker) -> tuple[str, float, float]:

@@ -76,9 +76,9 @@ class Cable:
         ends = [span_ends(*self._centres(span, poses, at), span.radii) for span in self.spans]
         pieces = [self._strand(span, end, poses, at) for span, end in zip(self.spans, ends, strict=True)]
         ways = [pieces[0]]
-        for k, (one, other) in enumerate(pairwise(self.spans)):
+        for k, (span, other) in enumerate(pairwise(self.spans)):
             centre = self._centres(other, poses, at)[0]
-            ways += [_arc(centre, one.radii[1], ends[k][1], ends[k + 1][0]), pieces[k + 1]]
+            ways += [_arc(centre, span.radii[1], ends[k][1], ends[k + 1][0]), pieces[k + 1]]
         first, last = self.spans[0], self.spans[-1]
         if self.closed:
             ways += [_arc(self._centres(first, poses, at)[0], first.radii[0], ends[-1][1], ends[0][0]), ends[0][:1]]

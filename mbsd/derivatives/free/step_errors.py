@@ -19,7 +19,7 @@ AIMED = 1e-6
 OF_KINKS = 0.05
 """Part of these where contacts by penalty have kinks, of which the estimate knows too little."""
 MOST, PATIENCE = 14, 6
-"""So often at most, and so often without less error: a toggle of 0.1 ms is found by parts, a jump is never."""
+"""So often at most, and so often without less error: a toggle of 1e-7 s is found by parts, a jump never."""
 DOUBTFUL = 1e-3
 """Error that is warned of."""
 MOST_STEPS = 20_000

@@ -1,7 +1,7 @@
 """``python -m benchmarks film``: the table of what a film costs in docs/benchmarks.md, each row a ratio of one run.
 
 --name four_bar --preset preview --frames 60    the film; the bars are meant for these, which take long on two cores
---only noop                                     rows by their first word: overhead, plain, resumed, cores, noop
+--only noop                                     rows by their first word: overhead, plates, plain, resumed, cores, noop
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from tools.documents.pages import between, replaced
 PAGE = ROOT / "docs" / "benchmarks.md"
 BEGIN, END = "<!-- rows of make bench-film -->", "<!-- end of bench-film -->"
 OF_PLAIN = 4
-"""Frames of the plain script that are measured; each takes the same."""
+"""Frames of the plain script, and whole frames, that are measured; each takes the same."""
 TURNS = 3
 """Turns of the film; a plain script renders each of them."""
 
@@ -57,6 +57,14 @@ def overhead(name: str, preset: Preset, frames: int, folder: Path) -> Bar:
     wall, cycles = _whole(name, preset, frames)
     settings = f"{preset.name}, {frames} frames, {duration(wall)}"
     return _at_most("frames stage, from start to exit", 1.03, wall / cycles, "Cycles' own seconds", settings)
+
+
+def plates(name: str, preset: Preset, frames: int, folder: Path) -> Bar:
+    """Wall time of the frames stage, which renders what changes, over that of its frames rendered whole."""
+    own, _ = _whole(name, preset, frames)
+    each = Film(name, preset, frames, folder).whole(min(OF_PLAIN, frames))
+    settings = f"{preset.name}, {frames} frames, {own / frames:.1f} s against {each:.1f} s a frame"
+    return _at_most("frames that render what changes", 0.45, own / (frames * each), "whole frames", settings)
 
 
 def plain(name: str, preset: Preset, frames: int, folder: Path) -> Bar:
@@ -112,6 +120,7 @@ def noop(name: str, preset: Preset, frames: int, folder: Path) -> Bar:
 
 ROWS: dict[str, Callable[[str, Preset, int, Path], Bar]] = {
     "overhead": overhead,
+    "plates": plates,
     "plain": plain,
     "resumed": resumed,
     "cores": cores,

@@ -15,7 +15,7 @@ from pathlib import Path
 import msgspec
 
 from render.film.inputs import read_film
-from render.frames.frames import Pictures
+from render.frames.frames import Pictures, Tally, render
 from render.frames.store import FrameStore, Timing
 from render.presets import Preset
 from shared.contract.shot import read_shot, write_shot
@@ -84,6 +84,17 @@ class Film:
     def timing(self) -> Timing:
         """Timing of the last run."""
         return jsonfile.read(self.store.timing, Timing)
+
+    def whole(self, count: int) -> float:
+        """Seconds inside Blender's renderer for each of ``count`` frames that are rendered whole."""
+        with _results_in(self.root):
+            film = read_film(Out(self.name), aspect=self.preset.aspect)
+            store, tally = FrameStore(self.store.folder.with_name("whole")), Tally()
+            step = max(1, self.frames // count)
+            with store.locked():
+                pictures = Pictures(film, self.preset, whole=True)
+                render(pictures, store, range(0, step * count, step), "whole", tally)
+        return tally.cycles / tally.rendered
 
     def plain(self, count: int) -> tuple[float, float]:
         """Seconds of a plain script until its first frame, and for each of ``count`` frames."""

@@ -316,17 +316,17 @@ class KeptBlender:
         self._child: Child | None = None
         self._answers: Iterator[Answer] = iter(())
 
-    def make(self, state: int, key: str, name: str) -> Answer:
+    def make(self, state: int, key: str, name: str, plate: int = -1) -> Answer:
         """Render one picture; the answer has its path, which the next picture may remove.
 
         Raises UserError with the reason if Blender cannot.
         """
         try:
             try:
-                return self._ordered(state, key, name)
+                return self._ordered(state, key, name, plate)
             except Grown:
                 self.stop()
-                return self._ordered(state, key, name)
+                return self._ordered(state, key, name, plate)
         except (Silent, Grown) as failure:
             self.stop()
             raise UserError(str(failure)) from failure
@@ -341,12 +341,12 @@ class KeptBlender:
             self._child = None
         self._stack.close()
 
-    def _ordered(self, state: int, key: str, name: str) -> Answer:
+    def _ordered(self, state: int, key: str, name: str, plate: int) -> Answer:
         if self._child is None:
             self._start()
         for path in Path(self._folder).glob("*.png"):
             path.unlink()
-        picture = Picture(state=state, folder=self._folder, key=key, name=name)
+        picture = Picture(state=state, folder=self._folder, key=key, name=name, plate=plate)
         assert self._child is not None
         assert self._child.process is not None
         assert self._child.process.stdin is not None
@@ -367,7 +367,7 @@ class KeptBlender:
         scratch = self._stack.enter_context(scratch_folder(home))
         self._folder = str(scratch.resolve())
         self._child = Child(home, scratch, Patience())
-        self._answers = self._child.attempt(self.job)
+        self._answers = self._child.attempt(msgspec.structs.replace(self.job, plates_folder=self._folder))
         for answer in self._answers:
             if answer.device:
                 self.device = answer.device

@@ -18,6 +18,25 @@ class Picture(msgspec.Struct, kw_only=True, frozen=True):
     key: str
     name: str
     """Name in messages: ``frame 12``."""
+    plate: int = -1
+    """Index of its plate in ``Job.plates``; -1 for a picture that is rendered whole."""
+
+
+class Plate(msgspec.Struct, kw_only=True, frozen=True):
+    """The picture of what stands while the camera does: rendered once for all its frames."""
+
+    key: str
+    """Hash of what stands."""
+    trial: str
+    """Hash of that and of the frame that tries the plate."""
+    state: int
+    """Index of that frame's state."""
+    moving: list[str]
+    """Bodies, and pieces as ``body/piece``, that move or are lifted."""
+    trails: list[int]
+    tubes: list[int]
+    labels: list[int]
+    """Indices of those that change."""
 
 
 class Job(msgspec.Struct, kw_only=True, frozen=True):
@@ -27,6 +46,9 @@ class Job(msgspec.Struct, kw_only=True, frozen=True):
     states: list[State]
     """Consecutive frames; a blurred picture needs its neighbours."""
     pictures: list[Picture] = []
+    plates: list[Plate] = []
+    plates_folder: str = ""
+    """Folder in which plates are kept."""
     waits: bool = False
     """Takes more pictures afterwards, a JSON line each on its standard input, until that closes."""
     blend: str | None = None
@@ -55,4 +77,13 @@ class Answer(msgspec.Struct, kw_only=True, frozen=True, omit_defaults=True):
     """Key of the picture in that file."""
     cycles: float = 0.0
     """Seconds inside Blender's renderer for this picture."""
+    plates: float = 0.0
+    """Seconds inside Blender's renderer for plates and the frames that try them."""
+    note: str = ""
+    """A sentence for the user."""
     error: str = ""
+
+
+def times_smaller(width: int, height: int) -> int:
+    """Return how many times the small picture of a frame is smaller; 0 where no such number divides both sides."""
+    return next((times for times in (4, 5, 3) if width % times == height % times == 0), 0)

@@ -82,8 +82,9 @@ _workers: dict[str, _Kept] = {}
 """By address: several workers may be one process."""
 
 
-def picture(files: Mapping[str, Path], common: str, order: tuple[int, str, str]) -> bytes:
-    """Return one frame: number of its state, key, and what messages call it; :class:`Made` as MessagePack.
+def picture(files: Mapping[str, Path], common: str, order: tuple[int, str, str, int]) -> bytes:
+    """Return one frame: number of its state, key, what messages call it, index of its plate; :class:`Made` as
+    MessagePack.
 
     Raises UserError if Blender cannot make it.
     """
@@ -91,9 +92,9 @@ def picture(files: Mapping[str, Path], common: str, order: tuple[int, str, str])
 
     kept = _workers.setdefault(get_worker().address, _Kept())
     with kept.busy:
-        state, key, name = order
+        state, key, name, plate = order
         blender = kept.for_film(files, common)
-        answer = blender.make(state, key, name)
+        answer = blender.make(state, key, name, plate)
         path = Path(answer.path)
         made = Made(path.name, path.read_bytes(), answer.cycles, blender.device)
         kept.used = time.monotonic()
@@ -133,10 +134,10 @@ def dealt(client: Client, job: Job) -> Deal:
     needed: dict[str, Callable[[], bytes]] = {piece.sha256: Path(piece.stl).read_bytes for piece in job.scene.pieces}
     pieces = [msgspec.structs.replace(piece, stl="") for piece in job.scene.pieces]
     scene = msgspec.structs.replace(job.scene, pieces=pieces)
-    content = msgspec.json.encode(msgspec.structs.replace(job, scene=scene, pictures=[]))
+    content = msgspec.json.encode(msgspec.structs.replace(job, scene=scene, pictures=[], plates_folder=""))
     common = content_hash(content)
     needed[common] = lambda: content
-    orders = {picture.key: (picture.state, picture.key, picture.name) for picture in job.pictures}
+    orders = {picture.key: (picture.state, picture.key, picture.name, picture.plate) for picture in job.pictures}
     work = Work(picture, reader(job), most_bytes(job.width, job.height) + AROUND)
     return Deal(client, work, common, needed, orders, FRAMES, Patience().scaled(START))
 

@@ -2,87 +2,32 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 import shutil
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import msgspec
 
 from render.blender.child import blender
-from render.blender.job import Answer, Job, Picture
+from render.blender.job import Answer, Job, Picture, times_smaller
 from render.film.film import Film
-from render.film.framing import SENSOR, studio
 from render.film.inputs import blender_version, read_film, stage_key
 from render.film.scene import Scene, State
-from render.film.solids import MILLIMETRE
+from render.frames.keys import frame_key, hash_of, scene_key
+from render.frames.plates import Plates, plates_of
 from render.frames.store import FrameIndex, FrameStore, Timing
 from render.presets import Preset
 from shared.cluster.address import address
-from shared.contract.parts import Z
 from shared.stage import jsonfile
 from shared.stage.console import duration, progress, say, warn
 from shared.stage.errors import UserError
-from shared.stage.files import sources_hash
 from shared.stage.paths import Out, out_root
 from shared.stage.stages import Stage
-
-# The name of a picture is a hash of what it shows, so no picture is rendered twice and no wrong one is kept.
-
-DIGITS = 9
-"""Poses count to a nanometre and a nanoradian."""
-BLENDER = Path(__file__).parents[1] / "blender"
-LETTERS = Path(__file__).parents[1] / "letters.py"
-"""The font of what Blender's side writes."""
-HATCHES = Path(__file__).parents[1] / "film" / "section.py"
-"""Stripes of its cut faces."""
-BLENDER_SOURCES = ("job.py", "picture_file.py", "scene", "worker")
-"""Sources that run in Blender; the other files of the room start it, and decide nothing that is seen."""
-
-
-def scene_key(scene: Scene, preset: Preset, blender: str) -> str:
-    """Return everything that all frames have in common; STL files count by content.
-
-    ``blender`` is the version of bpy. Of other rooms, Blender's side takes the letters and these numbers.
-    """
-    plain = _rounded(msgspec.to_builtins(scene))
-    for piece in plain["pieces"]:
-        del piece["stl"]
-    shown = {key: part for key, part in plain.items() if key not in ("mechanism", "fps")}
-    picture = [preset.width, preset.height, preset.samples, preset.motion_blur]
-    turned = studio(scene.studio.up).tolist()
-    return _hash([shown, picture, _sources(), blender, SENSOR, MILLIMETRE, Z, turned])
-
-
-def frame_key(scene: str, states: Sequence[State]) -> str:
-    """Return one frame of the scene with that key: its state alone, or with both neighbours' where the shutter blurs
-    them.
-    """
-    return _hash([scene, [_rounded(msgspec.to_builtins(state)) for state in states]])[:32]
-
-
-def _sources() -> str:
-    return sources_hash(*(BLENDER / name for name in BLENDER_SOURCES), LETTERS, HATCHES)
-
-
-def _rounded(value: Any) -> Any:
-    if isinstance(value, float):
-        return round(value, DIGITS) + 0.0  # -0.0 and 0.0 are one place
-    if isinstance(value, dict):
-        return {key: _rounded(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_rounded(item) for item in value]
-    return value
-
-
-def _hash(value: Any) -> str:
-    return hashlib.sha256(msgspec.json.encode(value, order="sorted")).hexdigest()
-
 
 # Renders the pictures a film still lacks. A picture that is there already is not rendered again.
 
@@ -126,6 +71,7 @@ def run(name: str, preset: Preset, show: str = "") -> None:
         )
         jsonfile.write(store.index, index)
         store.prune(set(made), spare=len(set(made)))
+        store.prune_plates(pictures.plates.plates)
     stage.outputs.extend(sorted(set(made)))
     stage.record()
 
@@ -174,10 +120,14 @@ class Tally:
 
 @dataclass
 class Pictures:
-    """Frames of a film as keys and states, at one preset."""
+    """Frames of a film as keys and states, at one preset.
+
+    Where the camera stands for long, its frames share a plate, unless each is to be ``whole``, as stills are.
+    """
 
     film: Film
     preset: Preset
+    whole: bool = False
     _states: dict[int, State] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -187,6 +137,11 @@ class Pictures:
     def shown(self) -> Scene:
         """Scene that all frames share."""
         return self.film.scene
+
+    @property
+    def count(self) -> int:
+        """Different frames."""
+        return self.film.clock.frames
 
     def around(self, frame: int) -> tuple[int, int, int]:
         """Return the frame between those that its shutter sees."""
@@ -200,24 +155,50 @@ class Pictures:
 
     def key(self, frame: int) -> str:
         """Return the name of the picture a frame shows."""
-        around = self.around(frame) if self.preset.motion_blur else (frame,)
-        return frame_key(self.scene, [self.state(f) for f in around])
+        key = frame_key(self.scene, self._shutter(frame))
+        which = self.plates.of_frame.get(frame)
+        return key if which is None else hash_of([key, self.plates.plates[which].trial])[:32]
+
+    @cached_property
+    def plates(self) -> Plates:
+        """The plates of the film."""
+        look = self.shown.studio.look
+        if self.whole or look.drawing is not None or not times_smaller(self.preset.width, self.preset.height):
+            return Plates()
+        return plates_of({frame: self._shutter(frame) for frame in range(self.count)}, self.scene)
+
+    def _shutter(self, frame: int) -> list[State]:
+        """Return the states that a frame shows: its own, or with both neighbours' where the shutter blurs them."""
+        return [self.state(f) for f in (self.around(frame) if self.preset.motion_blur else (frame,))]
 
     def job(self, frames: Sequence[int], store: FrameStore) -> Job:
         """Return the work order for these frames; a blurred frame has its neighbours beside it on the timeline."""
         states: list[State] = []
-        pictures = []
-        for frame in frames:
-            around = [self.state(f) for f in self.around(frame)] if self.preset.motion_blur else []
-            at = len(states) + (1 if around else 0)
-            states += around or [self.state(frame)]
-            pictures.append(
-                Picture(state=at, folder=str(store.folder.resolve()), key=self.key(frame), name=f"frame {frame}")
+
+        def placed(frame: int) -> int:
+            shutter = self._shutter(frame)
+            states.extend(shutter)
+            return len(states) - 1 - len(shutter) // 2
+
+        folder, of_frame = str(store.folder.resolve()), self.plates.of_frame
+        pictures = [
+            Picture(
+                state=placed(frame), folder=folder, key=self.key(frame), name=f"frame {frame}",
+                plate=of_frame.get(frame, -1),
             )
+            for frame in frames
+        ]  # fmt: skip
+        needed = {picture.plate for picture in pictures}
+        plates = [
+            msgspec.structs.replace(plate, state=placed(plate.state) if which in needed else 0)
+            for which, plate in enumerate(self.plates.plates)
+        ]
         return Job(
             scene=self.shown,
             states=states,
             pictures=pictures,
+            plates=plates,
+            plates_folder=str(store.plates.resolve()),
             width=self.preset.width,
             height=self.preset.height,
             samples=self.preset.samples,
@@ -248,6 +229,13 @@ def render(pictures: Pictures, store: FrameStore, frames: Sequence[int], what: s
             if answer.device:
                 tally.device = answer.device
                 say("frames", f"{name}: device: {answer.device}")
+                continue
+            if answer.note:
+                say("frames", f"{name}: {answer.note}")
+                continue
+            if answer.plates:
+                tally.cycles += answer.plates
+                say("frames", f"{name}: {duration(answer.plates)} for the plate of what stands")
                 continue
             tally.cycles += answer.cycles
             tally.rendered += 1

@@ -50,7 +50,7 @@ def _poster(out: Out, preset: Preset, show: str) -> Stage:
 
 
 def _make(out: Out, preset: Preset, frame: int | None, target: Path, stage: Stage, show: str) -> None:
-    """Make a still through a store of frames: the film's frames are used at once, and the film finds the still."""
+    """Make a still through the store of frames, rendered whole; it is kept there for the next time."""
     word = "poster" if frame is None else "still"
     if stage.is_fresh():
         say(word, f"{out.name}: {preset}: nothing to do")
@@ -70,7 +70,7 @@ def _make(out: Out, preset: Preset, frame: int | None, target: Path, stage: Stag
             f"(the motion {clock.showings} times, {clock.frames} frames each)"
         )
     frame %= clock.frames
-    pictures = frames.Pictures(film, preset)
+    pictures = frames.Pictures(film, preset, whole=True)
     store = FrameStore(out.frames(preset.name), (preset.width, preset.height))
     tally = frames.Tally()
     with store.locked():

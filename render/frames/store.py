@@ -1,7 +1,7 @@
 """The folder of one preset's frames: pictures by key, the film's index, and the timing of the last run.
 
-out/<mechanism>/frames/<preset>/<key>-<hash>.png, frames.json, timing.json. The name of a picture says what it shows and
-which bytes it has, so one that was damaged, or swapped for another, is known without a list beside it.
+out/<mechanism>/frames/<preset>/<key>-<hash>.png, frames.json, timing.json, plates/. The name of a picture says what it
+shows and which bytes it has, so one that was damaged, or swapped for another, is known without a list beside it.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
+from render.blender.job import Plate
 from render.blender.picture_file import fault_of_chunks, is_as_named
 from shared.stage import files, jsonfile
 from shared.stage.console import say
@@ -71,6 +72,7 @@ class FrameStore:
         self.folder, self.size = folder, size
         self.index = folder / "frames.json"
         self.timing = folder / "timing.json"
+        self.plates = folder / "plates"
 
     def find(self, key: str) -> Path | None:
         """Return the picture with this key, if it is there and has the bytes that its name tells; a damaged one is
@@ -165,6 +167,13 @@ class FrameStore:
         for path in unused[spare:]:
             self._remove(path)
         return len(unused[spare:])
+
+    def prune_plates(self, used: Collection[Plate]) -> None:
+        """Remove plates, and what their trials found, that the film does not use."""
+        keys = {key for plate in used for key in (plate.key, plate.trial)}
+        for path in self.plates.glob("*.*"):
+            if path.stem.partition("-")[0] not in keys:
+                self._remove(path)
 
     def read_timing(self) -> Timing | None:
         """Return the timing of the last run, if there was one."""

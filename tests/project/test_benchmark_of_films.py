@@ -36,7 +36,9 @@ def test_mechanisms_without_a_film_are_not_measured(out_root: Path, tmp_path: Pa
         Film("four_bar", TINY, 6, tmp_path)
     with pytest.raises(UserError, match="no mechanism has its film at tiny"):
         measure.noop("four_bar", TINY, 6, tmp_path)
-    with pytest.raises(UserError, match="there is no row 'speed'; there is: overhead, plain, resumed, cores, noop"):
+    with pytest.raises(
+        UserError, match="there is no row 'speed'; there is: overhead, plates, plain, resumed, cores, noop"
+    ):
         measure.measured(["--only", "speed"])
 
 

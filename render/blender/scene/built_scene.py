@@ -107,6 +107,9 @@ class BuiltScene:
     bodies: dict[str, Any]
     trails: list[Any]
     tubes: list[Any]
+    solids: dict[str, Any] = field(default_factory=dict)
+    """Pieces by ``body/piece``."""
+    texts: list[Any] = field(default_factory=list)
     front: Any = None
     """The scene of what is drawn over the picture: arrows, on nothing; None where there are none."""
     arcs: list[Any] = field(default_factory=list)
@@ -168,7 +171,7 @@ def build_scene(job: Job) -> BuiltScene:
     scene.frame_start, scene.frame_end = 0, len(job.states) - 1
     scene.render.fps = job.scene.fps
     beside = [*trails, *wires, *texts] if any(state.hidden for state in job.states) else []
-    return BuiltScene(job, scene, bodies, trails, wires, front, curved, beside)
+    return BuiltScene(job, scene, bodies, trails, wires, solids, texts, front, curved, beside)
 
 
 def _front(job: Job, camera: Any) -> Any:

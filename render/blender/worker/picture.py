@@ -95,11 +95,12 @@ def drawn(codes: Array, drawing: Drawing, width: int, height: int) -> Array:
     return picture + (np.array(drawing.line) - picture) * lines[..., None]
 
 
-def read_codes(path: Path, width: int, height: int) -> Array:
-    """Return codes (height, width, 3) of a picture in floats, the upper row first."""
+def read_values(path: Path, width: int, height: int) -> Array:
+    """Return the values (height, width, 3) of a picture as they are in its file, the upper row first."""
     import bpy
 
     image: Any = bpy.data.images.load(str(path))
+    image.colorspace_settings.name = "Non-Color"
     values = np.empty(width * height * 4, np.float32)
     image.pixels.foreach_get(values)
     bpy.data.images.remove(image)
@@ -226,10 +227,11 @@ def signs_of_life(tell: Callable[[str], None]) -> Iterator[None]:
         bpy.app.handlers.render_stats.remove(stats)
 
 
-def save_picture(scene: Any, job: Job, picture: Picture, over: Path | None) -> Path:
-    """Return the rendered picture as a checked PNG under the name that its key and its bytes give; returns its path.
+def save_picture(scene: Any, job: Job, picture: Picture, over: Path | None, light: Array | None = None) -> Path:
+    """Save the rendered picture as a checked PNG under the name that its key and its bytes give; return its path.
 
-    ``over`` is a picture with an alpha that is laid over it.
+    ``over`` is a picture with an alpha that is laid over it. ``light`` (H, W, 3), linear, is shown instead of what was
+    rendered last.
     """
     import bpy
 
@@ -239,6 +241,8 @@ def save_picture(scene: Any, job: Job, picture: Picture, over: Path | None) -> P
     def save(path: Path) -> None:
         if job.drawn:
             _save_drawing(scene, job, path)
+        elif light is not None:
+            _save_light(scene, light, path)
         else:
             bpy.data.images["Render Result"].save_render(str(path), scene=scene)
         if job.flat is None:
@@ -258,6 +262,35 @@ def save_picture(scene: Any, job: Job, picture: Picture, over: Path | None) -> P
     return path
 
 
+GRAIN = 0
+"""Seed of the noise that hides the steps between 256 values: the same in every frame."""
+
+
+def _save_light(scene: Any, light: Array, path: Path) -> None:
+    """Save linear light as the scene's view shows it, rounded to 8 bits with a noise of one step."""
+    import bpy
+    from PIL import Image
+
+    height, width, _ = light.shape
+    pixels = np.ones((height, width, 4), np.float32)
+    pixels[..., :3] = light[::-1]
+    image: Any = bpy.data.images.new("frame", width, height, float_buffer=True)
+    images = scene.render.image_settings
+    fine = path.with_suffix(".fine.png")
+    try:
+        image.pixels.foreach_set(pixels.ravel())
+        images.color_depth = "16"
+        image.save_render(str(fine), scene=scene)
+        shown = read_values(fine, width, height)
+    finally:
+        images.color_depth = "8"
+        bpy.data.images.remove(image)
+        fine.unlink(missing_ok=True)
+    grain = np.random.default_rng(GRAIN).random(shown.shape, np.float32)
+    page = Image.fromarray(np.clip(np.floor(255 * shown + grain), 0, 255).astype(np.uint8), "RGB")
+    page.save(path, format="PNG", compress_level=4)
+
+
 def _save_drawing(scene: Any, job: Job, path: Path) -> None:
     """Save lines on paper instead of the codes that were rendered, as a PNG."""
     import bpy
@@ -268,7 +301,7 @@ def _save_drawing(scene: Any, job: Job, path: Path) -> None:
     times = fineness(job)
     try:
         bpy.data.images["Render Result"].save_render(str(codes), scene=scene)
-        values = read_codes(codes, times * job.width, times * job.height)
+        values = read_values(codes, times * job.width, times * job.height)
     finally:
         codes.unlink(missing_ok=True)
     look = job.scene.studio.look.drawing

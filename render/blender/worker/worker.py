@@ -10,7 +10,7 @@ import threading
 from collections.abc import Callable, Iterator
 from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
@@ -20,6 +20,9 @@ from render.blender.worker.settings import picture_settings
 from render.film.scene import State
 from shared.stage.errors import UserError
 from shared.stage.signals import end_with_parent
+
+if TYPE_CHECKING:
+    from render.blender.regions.plates import Plates
 
 # System libraries that Blender needs, and the packages that have them.
 
@@ -160,6 +163,7 @@ def _work(job: Job, more: Iterator[Picture], answer: Callable[..., None]) -> Non
     """Build the scene and make what the job asks for, and ``more``."""
     import bpy
 
+    from render.blender.regions.plates import Plates
     from render.blender.scene.built_scene import build_scene as build
     from render.blender.worker import settings
     from render.blender.worker.picture import render, save_picture, signs_of_life
@@ -178,20 +182,38 @@ def _work(job: Job, more: Iterator[Picture], answer: Callable[..., None]) -> Non
         front_settings(built.front, built.scene, job)
     if job.drawn:
         drawing_settings(built.scene, job)
+    plates = Plates(built, render, lambda doing: answer(doing=doing)) if job.plates else None
     for picture in chain(job.pictures, more):
         built.show(picture.state)
-        over = None
+        over, painted = None, None
         with signs_of_life(lambda doing, name=picture.name: answer(doing=f"renders {name}: {doing}")):
             seconds = 0.0
             if built.front is not None and _is_drawn(job.states[picture.state]):
                 over = Path(picture.folder) / f".{picture.key}.over.part.png"
                 seconds += render(built.front)
                 bpy.data.images["Render Result"].save_render(str(over), scene=built.front)
-            seconds += render(built.scene)
+            if plates is not None and picture.plate >= 0:
+                painted = plates.painted(job.plates[picture.plate], picture.state)
+                _tell_of_plates(plates, answer)
+            if painted is None:
+                built.show(picture.state)
+                seconds += render(built.scene)
+            else:
+                seconds += painted.seconds
         answer(doing=f"saves {picture.name}")
-        answer(path=str(save_picture(built.scene, job, picture, over)), key=picture.key, cycles=seconds)
+        light = None if painted is None else painted.light
+        answer(path=str(save_picture(built.scene, job, picture, over, light)), key=picture.key, cycles=seconds)
         if over is not None:
             over.unlink()
+
+
+def _tell_of_plates(plates: Plates, answer: Callable[..., None]) -> None:
+    """Tell how long plates took, and what was found, if any was made for the last picture."""
+    if plates.seconds:
+        answer(plates=plates.seconds)
+    for note in plates.notes:
+        answer(note=note)
+    plates.seconds, plates.notes = 0.0, []
 
 
 def _is_drawn(state: State) -> bool:

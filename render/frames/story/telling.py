@@ -59,6 +59,11 @@ class StoryPictures(Pictures):
         """The scene of the film, without what is written over it: stories have their own words."""
         return self._scene
 
+    @property
+    def count(self) -> int:
+        """Different frames."""
+        return len(self.rows)
+
     def around(self, frame: int) -> tuple[int, int, int]:
         """Return numbers of states: those of neighbours are negative, so that each picture has its own."""
         return -2 * frame - 1, frame, -2 * frame - 2

@@ -18,7 +18,7 @@ from render.film.framing import project
 from render.film.poses import Moment, Poses, moved
 from render.film.tubes.spirals import APART, HUB, RIM, Site, Spiral, spirals
 from render.film.tubes.stretched import HOOK, cylinder_tubes, helix, placed, sagging
-from render.frames.frames import scene_key
+from render.frames.keys import scene_key
 from render.presets import PRESETS
 from shared.contract import Action, ContactMotion, ForceMotion, Motion, Shape, read_motion, read_parts
 from shared.contract.shot import Shot, read_shot

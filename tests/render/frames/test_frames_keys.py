@@ -12,8 +12,9 @@ import pytest
 
 from render.film.film import Film
 from render.film.inputs import SHARED, stage_key
-from render.frames import frames as render_keys
-from render.frames.frames import Pictures, frame_key, scene_key
+from render.frames import keys as render_keys
+from render.frames.frames import Pictures
+from render.frames.keys import frame_key, scene_key
 from render.presets import PRESETS
 from shared.contract import read_motion, read_parts
 from shared.contract.shot import Camera, Label, Shot, Surface, Trail, read_shot, write_shot
@@ -106,7 +107,7 @@ def test_an_edit_of_what_blender_runs_changes_every_key(
     shutil.copytree(render_keys.BLENDER, copy, ignore=shutil.ignore_patterns("__pycache__"))
     monkeypatch.setattr(render_keys, "BLENDER", copy)
     assert keys(pictures()) == before
-    for file in ("scene/built_scene.py", "worker/worker.py"):
+    for file in ("regions/regions.py", "scene/built_scene.py", "worker/worker.py"):
         (copy / file).write_text((copy / file).read_text() + "\n# brighter\n")
         after = keys(pictures())
         assert not set(before) & set(after)
@@ -114,8 +115,11 @@ def test_an_edit_of_what_blender_runs_changes_every_key(
 
 
 def test_blenders_side_takes_nothing_from_outside_that_no_key_holds():
-    numbers, telling = {"SENSOR", "MILLIMETRE", "Z", "studio"}, {"picture_file", "errors", "files", "signals"}
-    blender = [f"render.blender.{part}" for part in ("job", "scene", "worker")]
+    numbers, telling = (
+        {"SENSOR", "MILLIMETRE", "Z", "studio", "half_field"},
+        {"picture_file", "errors", "files", "signals"},
+    )
+    blender = [f"render.blender.{part}" for part in ("job", "regions", "scene", "worker")]
     inside = (*blender, "render.film.scene", "render.letters", "render.film.section", "render.looks")
     places = [render_keys.BLENDER / name for name in render_keys.BLENDER_SOURCES]
     for file in [file for place in places for file in (place.rglob("*.py") if place.is_dir() else [place])]:

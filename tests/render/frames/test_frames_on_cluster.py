@@ -23,8 +23,9 @@ from shared.contract.shot import Shot
 from shared.stage import jsonfile
 from tools.fixtures import film_fixture
 
-TINY = Preset("tiny", 48, 27, 1)
-FRAMES = 12
+SMALL = Preset("small", 320, 180, 8)
+"""Large enough for frames to be put together from plates, one of each worker."""
+FRAMES = 16
 
 
 @pytest.fixture
@@ -50,7 +51,7 @@ def test_killed_workers_lose_no_frame_and_change_none(
     monkeypatch.setenv("MBSD_OUT", str(tmp_path / "far"))
     far = film_fixture.write(shot)
     monkeypatch.setenv("CLUSTER", cluster.scheduler_address)
-    store = FrameStore(far.frames(TINY.name))
+    store = FrameStore(far.frames(SMALL.name))
     ended: list[int] = []
 
     def kill() -> None:
@@ -63,7 +64,7 @@ def test_killed_workers_lose_no_frame_and_change_none(
 
     killer = threading.Thread(target=kill)
     killer.start()
-    frames.run("four_bar", TINY)
+    frames.run("four_bar", SMALL)
     killer.join()
     assert len(ended) == 1
     assert "frames: four_bar: made by " in capsys.readouterr().out
@@ -71,10 +72,10 @@ def test_killed_workers_lose_no_frame_and_change_none(
     monkeypatch.setenv("MBSD_OUT", str(tmp_path / "near"))
     monkeypatch.setenv("CLUSTER", "")
     near = film_fixture.write(shot)
-    frames.run("four_bar", TINY)
-    here = pictures(near.frames(TINY.name))
+    frames.run("four_bar", SMALL)
+    here = pictures(near.frames(SMALL.name))
     assert len(here) >= FRAMES - 1
     assert pictures(store.folder) == here
     index = jsonfile.read(store.index, FrameIndex)
-    assert index == jsonfile.read(FrameStore(near.frames(TINY.name)).index, FrameIndex)
+    assert index == jsonfile.read(FrameStore(near.frames(SMALL.name)).index, FrameIndex)
     assert not list((tmp_path / "workers").glob(".cluster/**/*.png"))

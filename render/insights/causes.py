@@ -1,4 +1,4 @@
-"""Causes of a joint's reaction at one moment: its parts from gas, springs, loads, muscles, contact, weight and inertia.
+"""Causes of a joint's reaction at one moment: its parts from gas, springs, loads, weight and others.
 
 Reactions follow linearly from what loads the bodies. With each load alone the bodies would accelerate as the joints
 and drivers let them:
@@ -25,7 +25,7 @@ Wrench = tuple[float, float, float]
 
 
 def parts_of(seen: Seen, name: str, row: int) -> dict[str, float]:
-    """Return the parts of a joint's reaction along it, by cause; they add up to 1. Empty where they are not known."""
+    """Return the parts of a joint's reaction by cause, which add up to 1; empty if not known."""
     index = {body: 3 * k for k, body in enumerate(seen.motion.bodies)}
     columns: list[Array] = []
     own: list[tuple[int, Array]] = []

@@ -75,7 +75,7 @@ class Insight:
 
 @cache
 def sentences(language: str) -> dict[str, str]:
-    """Return the sentences of a language by template, with words for names under keys that begin with a bar."""
+    """Return the sentences of a language by template; single words have keys that begin with a bar."""
     tables = tomllib.loads((LANGUAGES / f"{language}.toml").read_text(encoding="utf-8"))
     return {f"|{key}": words for key, words in tables["words"].items()} | tables["sentences"]
 

@@ -54,9 +54,9 @@ def insights(motion: Motion) -> list[Insight]:
     return ranked((each for chapter in chapters for each in chapter(seen)), names)
 
 
-def ranked(found: Iterable[Insight], names: Sequence[str]) -> list[Insight]:
+def ranked(findings: Iterable[Insight], names: Sequence[str]) -> list[Insight]:
     """Return insights by how telling they are, alike ones as one; ``names`` are all of the model."""
-    weighed = [replace(each, telling=WEIGHTS[each.kind] * each.strength) for each in merged(list(found), names)]
+    weighed = [replace(each, telling=WEIGHTS[each.kind] * each.strength) for each in merged(list(findings), names)]
     times: dict[str, int] = {}
     out = []
     for each in sorted(weighed, key=lambda each: -each.telling):
@@ -66,11 +66,11 @@ def ranked(found: Iterable[Insight], names: Sequence[str]) -> list[Insight]:
     return [each for each in sorted(out, key=lambda each: -each.telling) if each.telling >= LEAST]
 
 
-def merged(found: list[Insight], names: Sequence[str]) -> list[Insight]:
+def merged(findings: list[Insight], names: Sequence[str]) -> list[Insight]:
     """Return insights, those that all bodies of one stem share as one on each of them."""
     stems = Counter(stem_of(name) for name in dict.fromkeys(names))
     groups: dict[tuple[str, ...], list[Insight]] = {}
-    for each in found:
+    for each in findings:
         groups.setdefault(_without_numbers(each), []).append(each)
     out: list[Insight] = []
     for group in groups.values():

@@ -45,7 +45,7 @@ class Output:
 
 @dataclass(frozen=True)
 class Input:
-    """What moves the mechanism: the only driver, or the crank that forces turn."""
+    """Mover of the mechanism: the only driver, or the crank that forces turn."""
 
     name: str
     body: str
@@ -157,7 +157,7 @@ class Seen:
 
     @cached_property
     def input(self) -> Input | None:
-        """What moves the mechanism; None of one that is let go, or has several drivers that move."""
+        """The mover of the mechanism; None of one that is let go, or has several drivers that move."""
         moving = {name: driver for name, driver in self.motion.drivers.items() if np.ptp(driver.value) > 1e-9}
         if len(moving) == 1:
             ((name, driver),) = moving.items()
@@ -219,7 +219,7 @@ class Seen:
         value = driver.value if driver else self.theta[self.input.body] if self.input else [0.0, 1.0]
         return 1.0 if value[-1] >= value[0] else -1.0
 
-    def at(self, row: int) -> tuple[float, float]:
+    def moment_of(self, row: int) -> tuple[float, float]:
         """Return the time of a row as start and end of a moment (s)."""
         return float(self.time[row]), float(self.time[row])
 
@@ -254,7 +254,9 @@ class Seen:
             a, b = clear[-1], clear[0]  # over the seam
             before, after = t[a] - t[-1], t[b] - t[0]
             zero = before + (after - before) * v[a] / (v[a] - v[b])
-            out.append((float(t[0] + zero if zero >= 0 else t[-1] + zero), 1 if v[b] > 0 else -1))
+            out.append(
+                (float(t[0] + max(zero, 0.0) if zero >= -1e-9 * self.span else t[-1] + zero), 1 if v[b] > 0 else -1)
+            )
         return sorted(out)
 
     def without_noise(self, value: float, unit: str) -> float:

@@ -20,8 +20,8 @@ EDGE = 0.02
 
 def stops(motion: Motion) -> list[Insight]:
     """Return what is worth a stop, the most telling first; then events and the peaks of joints and speeds."""
-    found = insights(motion)
-    everything = [each for each in found if each.start == each.end or each.kind == "dead_point"]
+    findings = insights(motion)
+    everything = [each for each in findings if each.start == each.end or each.kind == "dead_point"]
     everything += [*_events(motion), *_reactions(motion), *_speeds(motion)]
     if motion.period is not None:
         return everything

@@ -92,7 +92,7 @@ def page(mechanism: str, title: str, subtitle: str, shows: str = "") -> Figure:
     return figure
 
 
-def told(motion: Motion, *kinds: str) -> str:
+def insight_over(motion: Motion, *kinds: str) -> str:
     """Return the sentence of the most telling insight of these kinds that fits over a title; empty without any."""
     sentences = (each.sentence() for each in insights(motion) if each.kind in kinds)
     return next((sentence for sentence in sentences if len(sentence) <= LETTERS), "")

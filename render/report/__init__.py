@@ -20,7 +20,7 @@ from shared.stage.files import sources_hash, write_bytes
 from shared.stage.paths import Out, mechanism_file
 from shared.stage.stages import Stage, contract_sources, key_of, versions
 
-TOLD = 8
+INSIGHTS = 8
 """Insights of a report, at most."""
 READ = [*contract_sources("clearance"), *FRAME_SOURCES]
 
@@ -85,7 +85,7 @@ def report(motion: Motion, parts: Parts | None, clearance: Clearance | None, sai
 
 def insight_section(motion: Motion) -> list[str]:
     """Return what the motion shows as a list, the most telling first."""
-    return [f"- {each.sentence()}" for each in insights(motion)[:TOLD]]
+    return [f"- {each.sentence()}" for each in insights(motion)[:INSIGHTS]]
 
 
 def description(name: str) -> str:

@@ -61,7 +61,7 @@ UNITS = {
     "power": "W", "kinetic": "J", "potential": "J",
 }  # fmt: skip
 """Units of series whose rounding is drawn as zero."""
-TOLD = 6
+INSIGHTS = 6
 """Insights on the page, at most."""
 EFFORTS = ("effort", "normal", "friction")
 """Series in the unit of the effort of their driver, force or contact."""
@@ -279,7 +279,7 @@ def read_payload(out: Out) -> dict[str, Any]:
     parts = read_parts(out.parts, out.name) if out.parts.is_file() else None
     solved, motion = motion, with_rods(motion, parts) if parts else motion
     page = payload(motion, skeleton.moving, shot)
-    page["insights"] = [{"time": each.start, "words": each.sentence()} for each in insights(solved)[:TOLD]]
+    page["insights"] = [{"time": each.start, "words": each.sentence()} for each in insights(solved)[:INSIGHTS]]
     film = Film(motion, parts, shot, out.parts_folder) if parts else None
     if film is not None:
         page = with_parts(page, film)

@@ -146,7 +146,7 @@ def _zipped(paths: list[Path]) -> bytes:
 # Entries of the site: what it says of each mechanism, read from its files.
 
 
-TOLD = 5
+INSIGHTS = 5
 """Insights on the page of a mechanism, at most."""
 
 
@@ -175,6 +175,6 @@ def entry_of(name: str) -> Entry:
     parts = read_parts(out.parts, name) if out.parts.is_file() else None
     clearance = current_clearance(out, parts, "site")
     text = description(name)
-    told = [each.sentence() for each in insights(motion)[:TOLD]]
+    shows = [each.sentence() for each in insights(motion)[:INSIGHTS]]
     known = facts(motion, parts, clearance)
-    return Entry(name, title_of(name), sentences(text), known, purposes(name, text, motion), insights=told)
+    return Entry(name, title_of(name), sentences(text), known, purposes(name, text, motion), insights=shows)

@@ -127,8 +127,8 @@ def wall(title: str, entries: Sequence[Entry], filters: Sequence[str]) -> str:
 
 def machine(entry: Entry, others: Sequence[Entry]) -> str:
     """Return index.html of a mechanism: its film, sliders, numbers, files and neighbours."""
-    facts, told = ("\n".join(f"<li>{escape(each)}</li>" for each in rows) for rows in (entry.facts, entry.insights))
-    shows = f'<h2>What it shows</h2>\n<ul class="insights">\n{told}\n</ul>\n' if told else ""
+    facts, listed = ("\n".join(f"<li>{escape(each)}</li>" for each in rows) for rows in (entry.facts, entry.insights))
+    shows = f'<h2>What it shows</h2>\n<ul class="insights">\n{listed}\n</ul>\n' if listed else ""
     files = "\n".join(
         f'<li><a href="files/{escape(each.file)}" download>{escape(each.words)} '
         f"<small>{_size(each.size)}</small></a></li>"

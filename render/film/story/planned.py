@@ -35,18 +35,18 @@ SHALLOW = 13.0
 
 def planned(
     film: Film, forces: Film | None, reasons: Sequence[Insight], preset: Preset, seconds: float = 0.0,
-    cut: Film | None = None, told: Sequence[Insight] = (),
+    cut: Film | None = None, shows: Sequence[Insight] = (),
 ) -> Story:  # fmt: skip
     """Return the story of a film.
 
     ``forces`` is the same with arrows, None where nothing has any, ``cut`` the same cut open, None of a shot without a
-    section; time stops for the first of ``reasons``, unless the shot asks for another, and ``told`` is all that the
+    section; time stops for the first of ``reasons``, unless the shot asks for another, and ``shows`` is all that the
     motion shows. With ``seconds`` it is a loop of
     that length.
 
     Raises UserError with place and remedy for wishes of the shot that cannot be.
     """
-    scenery = replace(scenery_of(film, forces, reasons, preset), cut=cut, told=told)
+    scenery = replace(scenery_of(film, forces, reasons, preset), cut=cut, shows=shows)
     if seconds:
         return _assemble(scenery, [loop(scenery, seconds)])
     most = BUDGET * min(film.clock.frames, film.clock.moving + 1) * (2 / scenery.step)

@@ -59,7 +59,7 @@ class Ramp:
         return self.segments[-1][2] if self.segments else 0.0
 
     def shown_rate(self, s: float) -> float | None:
-        """Return the rate that is written at film second ``s``; None while it changes, or holds for less than SHOWN."""
+        """Return the rate that is written at film second ``s``; None while it changes or is too short."""
         begins = 0.0
         for seconds, low, high in self.segments:
             if s < begins + seconds:

@@ -159,7 +159,7 @@ class Scenery:
     """Lens blur of a macro, in pixels of a picture 1280 wide; 0 is a pinhole."""
     cut: Film | None = None
     """The same film cut open; None where the shot has no section."""
-    told: Sequence[Insight] = ()
+    shows: Sequence[Insight] = ()
     """All that the motion shows, the most telling first."""
     scale: float = 1.0
     """Part of the seconds in which pictures move; what is cut is held instead."""
@@ -297,9 +297,9 @@ class Scenery:
 
     @property
     def of_motion(self) -> Insight | None:
-        """What the machine does as long as it runs, the most telling first that is no stop; None without any."""
+        """The most telling insight into what the machine does as long as it runs; None without any."""
         stop = self.reasons[0].template if self.reasons else ""
-        lasting = [each for each in self.told if each.end > each.start] or list(self.told)
+        lasting = [each for each in self.shows if each.end > each.start] or list(self.shows)
         return next((each for each in lasting if each.template != stop and self.fits(each)), None)
 
     def moving(self, seconds: float) -> float:
@@ -312,7 +312,7 @@ class Scenery:
         return each * max(1, round(seconds / each))
 
     def going(self, time: float, rate: float | None, strip: bool = True, **more: object) -> Over:
-        """Return the overlay of a moving picture: the rate of time if it is written, the strip with its playhead."""
+        """Return the overlay of a moving picture: the rate of time if it is written, and the strip."""
         words = "" if rate is None else rate_words(rate, self.say)
         over = Over(rate=words, strip=1.0 if strip and self.curves else 0.0, now=time)
         return msgspec.structs.replace(over, **more)

@@ -1,4 +1,4 @@
-"""Insights into energy: where it is lost, impacts, sticking, swings that die away, orbits, tuned springs."""
+"""Insights into energy: losses, impacts, sticking, swings that die away, orbits, springs."""
 
 from __future__ import annotations
 
@@ -192,7 +192,7 @@ def _dies(tops: list[tuple[float, float]]) -> bool:
 
 
 def small_period(seen: Seen, output: Output) -> float | None:
-    """Return the period of small swings (s) of one body that hangs on a pin under its weight alone; else None."""
+    """Return the period of small swings (s) of one body on a pin under its weight; else None."""
     motion = seen.motion
     if output.slides or len(motion.bodies) != 1 or motion.forces or output.body not in motion.bodies:
         return None
@@ -269,7 +269,7 @@ def _comes_back(seen: Seen) -> bool:
 
 
 def rebound(seen: Seen, contact: ContactMotion, at: float) -> tuple[float, float] | None:
-    """Return the speed before an impact (m/s or rad/s) and the part that comes back; None without rows of both."""
+    """Return the speed before an impact (m/s or rad/s) and the part that comes back; None if unknown."""
     rows = np.flatnonzero(seen.time == at)
     if len(rows) < 2:
         return None
@@ -363,7 +363,7 @@ def climbs(seen: Seen) -> Iterator[Insight]:
     share = (float(height[k]) - float(height[:k].min())) / (float(height[0]) - float(height[:k].min()))
     template = "climbs_back" if share > 1 - STANDS else "climbs"
     yield insight(
-        "climbs", share, "", seen.at(k), 0.5 if share > 1 - STANDS else 0.9, template,
+        "climbs", share, "", seen.moment_of(k), 0.5 if share > 1 - STANDS else 0.9, template,
         bodies=tuple(seen.motion.bodies), share=amount(share, "share"), at=amount(seen.time[k], "s"),
     )  # fmt: skip
 
@@ -383,7 +383,7 @@ def isolation(seen: Seen) -> Iterator[Insight]:
         ratio = shaken[rough] / shaken[gentle]
         k = int(np.abs(seen.centres[rough].ay).argmax())
         yield insight(
-            "isolation", ratio, "", seen.at(k), 0.8, bodies=(gentle, rough), joints=(name,),
+            "isolation", ratio, "", seen.moment_of(k), 0.8, bodies=(gentle, rough), joints=(name,),
             body=body(gentle), other=body(rough), load=load(name), most=amount(shaken[rough], "m/s²"),
             least=amount(shaken[gentle], "m/s²"), ratio=amount(ratio, "times", 2),
         )  # fmt: skip
@@ -401,7 +401,7 @@ def turns_of_cycle(seen: Seen) -> Iterator[Insight]:
 
 
 def _differs(seen: Seen) -> bool:
-    """Return True if some body is elsewhere after one turn of the crank, and not for the ratio of a gear alone."""
+    """Return True if some body is elsewhere after one turn of the crank, gears left out."""
     assert seen.input is not None
     if any(held_ratio(output.rate, seen.input.rate) is not None for output in seen.outputs):
         return False

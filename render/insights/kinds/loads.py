@@ -59,8 +59,8 @@ def drivers(seen: Seen) -> Iterator[Insight]:
                 yield from _free(seen, name)
             continue
         counts = works[name] / most if most else 1.0
-        for found in (*_peak(seen, name, each, effort, power), *_braking(seen, name, each, effort, power)):
-            yield replace(found, strength=found.strength * (0.4 + 0.6 * counts))
+        for insight_ in (*_peak(seen, name, each, effort, power), *_braking(seen, name, each, effort, power)):
+            yield replace(insight_, strength=insight_.strength * (0.4 + 0.6 * counts))
         if counts == 1.0:
             yield from _ripple(seen, name, each, effort)
 
@@ -186,7 +186,7 @@ def muscles(seen: Seen) -> Iterator[Insight]:
     power = np.asarray(seen.motion.forces[name].power)
     k = first_peak(power)
     yield insight(
-        "work_share", share, "", seen.at(k), 0.8, joints=(name,), load=load(name),
+        "work_share", share, "", seen.moment_of(k), 0.8, joints=(name,), load=load(name),
         share=amount(share, "share"), work=amount(works[name], "J"), total=amount(total, "J"),
         at=seen.moment(float(seen.time[k])), power=amount(power[k], "W"),
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Insights into how force is passed on: transmission and pressure angles, dead points, change points, toggles."""
+"""Insights into how force is passed on: transmission and pressure angles, dead points, toggles."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def transmission(seen: Seen, loop: Loop) -> Iterator[Insight]:
 
 
 def dead_points(seen: Seen, loop: Loop, is_alone: bool) -> Iterator[Insight]:
-    """Yield where crank and coupler are in line; of the lever of a lone loop that does not turn round, a toggle."""
+    """Yield where crank and coupler are in line: dead points of a crank, the toggle of a lever."""
     passed = loop.dead_points(seen.time)
     if not passed:
         return
@@ -116,7 +116,7 @@ def change_point(seen: Seen, loop: Loop) -> Iterator[Insight]:
     k = int(np.argmin(seen.motion.diagnostics.singularity_margin))
     parallel = abs(loop.lengths[0] - loop.lengths[2]) < CHANGES and abs(loop.lengths[1] - loop.lengths[3]) < CHANGES
     yield insight(
-        "change_point", short + long, "m", seen.at(k), 0.7,
+        "change_point", short + long, "m", seen.moment_of(k), 0.7,
         "parallelogram" if parallel else "change_point", bodies=(loop.crank, loop.coupler, loop.follower),
         crank=body(loop.crank), coupler=body(loop.coupler), follower=body(loop.follower),
     )  # fmt: skip
@@ -144,7 +144,7 @@ def pressure_angle(seen: Seen, name: str, joint: JointMotion) -> Iterator[Insigh
     if angle[k] < 1e-4:
         return
     yield insight(
-        "pressure_angle", angle[k], "rad", seen.at(k), 0.6, f"pressure_{'good' if good else 'steep'}",
+        "pressure_angle", angle[k], "rad", seen.moment_of(k), 0.6, f"pressure_{'good' if good else 'steep'}",
         bodies=joint.bodies, joints=(name,), cam=body(joint.bodies[0]), follower=body(follower),
         angle=amount(angle[k], "deg"), at=seen.moment(float(seen.time[k])),
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Insights into paths of traced points: straight stretches, ellipses, cusps, crossings, and steps of a foot."""
+"""Insights into paths of traced points: straight stretches, ellipses, cusps, crossings, steps."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ def paths(seen: Seen) -> Iterator[Insight]:
         if not seen.repeats and seen.motion.analysis == "simulation":
             yield from reach(seen, name, way)
             continue
-        found = [] if traced.body in seen.pinned else list(straight(seen, name, way[rows], size))
-        yield from found
-        if any(each.template == "straight_exactly" for each in found):
+        stretches = [] if traced.body in seen.pinned else list(straight(seen, name, way[rows], size))
+        yield from stretches
+        if any(each.template == "straight_exactly" for each in stretches):
             continue
         yield from oval(seen, name, way[rows])
         if not seen.repeats or traced.body in seen.pinned:
@@ -96,7 +96,7 @@ def _end(seen: Seen) -> float:
 
 
 def straightest(way: Array, size: float, closed: bool) -> tuple[int, int, float, float] | None:
-    """Return first row, count of rows, length and largest deviation (m) of the longest straight stretch; else None.
+    """Return first row, count, length and deviation (m) of the longest straight stretch; else None.
 
     ``way`` (n, 2) is closed if its last row is its first again. The deviation is from the line that fits best.
     """
@@ -190,7 +190,7 @@ def cusps(seen: Seen, name: str, rows: slice) -> Iterator[Insight]:
     cosine = float(before @ after / max(float(np.hypot(*before) * np.hypot(*after)), 1e-300))
     if cosine < -0.5:
         yield insight(
-            "cusp", speed[k], "m/s", seen.at(k), 0.5, bodies=(traced.body,), joints=(name,),
+            "cusp", speed[k], "m/s", seen.moment_of(k), 0.5, bodies=(traced.body,), joints=(name,),
             point=point(name), at=seen.moment(float(seen.time[k])),
         )  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Insights into ratios: of speeds that gears and belts hold, of those that change, of copies that are to scale."""
+"""Insights into ratios: of speeds that stay or change, and of copies that are to scale."""
 
 from __future__ import annotations
 
@@ -119,16 +119,16 @@ def changing_ratio(seen: Seen, output: Output) -> Iterator[Insight]:
 
 def difference(seen: Seen) -> Iterator[Insight]:
     """Yield how much further one of two mirrored outputs turns than the other, as the wheels of a car do."""
-    for one, other in combinations([each for each in seen.outputs if not each.slides], 2):
-        first, second = (each.value - each.value[0] for each in (one, other))
+    for mirrored, other in combinations([each for each in seen.outputs if not each.slides], 2):
+        first, second = (each.value - each.value[0] for each in (mirrored, other))
         ends = (float(first.max()), float(-first.min())), (float(-second.min()), float(second.max()))
         if np.abs(np.subtract(*ends)).max() > 1e-4 * max(ends[0]) or abs(ends[0][0] - ends[0][1]) < 0.02 * max(ends[0]):
             continue
         k = int(np.abs(first).argmax())
         most, least = abs(float(first[k])), abs(float(second[k]))
         yield insight(
-            "difference", most / least, "", seen.at(k), 0.8, bodies=(one.body, other.body), body=body(one.body),
-            other=body(other.body), most=amount(most, "deg"), least=amount(least, "deg"),
+            "difference", most / least, "", seen.moment_of(k), 0.8, bodies=(mirrored.body, other.body),
+            body=body(mirrored.body), other=body(other.body), most=amount(most, "deg"), least=amount(least, "deg"),
         )  # fmt: skip
 
 
@@ -138,14 +138,14 @@ def scale(seen: Seen) -> Iterator[Insight]:
         first, second = (
             np.array(seen.motion.points[name].x) + 1j * np.array(seen.motion.points[name].y) for name in (a, b)
         )
-        one, other = first - first.mean(), second - second.mean()
-        if min(np.abs(one).max(), np.abs(other).max()) < 1e-3 * seen.size:
+        drawn, copy = first - first.mean(), second - second.mean()
+        if min(np.abs(drawn).max(), np.abs(copy).max()) < 1e-3 * seen.size:
             continue
-        factor = np.vdot(one, other) / np.vdot(one, one)
+        factor = np.vdot(drawn, copy) / np.vdot(drawn, drawn)
         size = abs(factor)
-        if np.abs(other - factor * one).max() > 1e-6 * np.abs(other).max() or abs(size - 1) < 1e-6:
+        if np.abs(copy - factor * drawn).max() > 1e-6 * np.abs(copy).max() or abs(size - 1) < 1e-6:
             continue
-        if np.ptp(np.angle(one)) < 0.5:  # along one line anything is to scale
+        if np.ptp(np.angle(drawn)) < 0.5:  # along one line anything is to scale
             continue
         small, large = (a, b) if size > 1 else (b, a)
         ratio = max(size, 1 / size)

@@ -1,4 +1,4 @@
-"""Insights into balance: how much of the bodies' inertia reaches the frame, in which orders, and what cancels."""
+"""Insights into balance: the force and couple on the frame, their orders, and what cancels."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def frame_force(seen: Seen) -> Iterator[Insight]:
     values |= {"order": amount(order, "count") if order == round(order) else amount(order, "", 3)}
     strength = 0.3 + 0.5 * (1 - share) * (moves > 1) + 0.3 * (template == "first_cancels")
     yield insight(
-        "balance", size[k], "N", seen.at(k), strength, template, times=_times(order), **values
+        "balance", size[k], "N", seen.moment_of(k), strength, template, times=_times(order), **values
     )  # fmt: skip
 
 
@@ -78,7 +78,7 @@ def _times(order: float) -> str:
 
 
 def main_order(seen: Seen, name: str) -> tuple[float, float, float] | None:
-    """Return the largest order of a quantity, its part of all, and the part of the first; None where it is rounding."""
+    """Return the largest order, its part of all, and that of the first; None where it is rounding."""
     vibration = seen.motion.vibration
     if vibration is None or name not in vibration.harmonics:
         return None
@@ -108,7 +108,7 @@ def couple(seen: Seen) -> Iterator[Insight]:
     order, _, first = orders
     template = "couple_second" if order > 1.5 and first < 1e-3 else "couple"
     yield insight(
-        "couple", size[k], "N m", seen.at(k), 0.55, template, most=amount(size[k], "N m"),
+        "couple", size[k], "N m", seen.moment_of(k), 0.55, template, most=amount(size[k], "N m"),
         times=_times(order),
     )  # fmt: skip
 

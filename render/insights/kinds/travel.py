@@ -1,4 +1,4 @@
-"""Insights into how far, how fast and when things move: dwells, quick returns, strokes, steps of outputs."""
+"""Insights into how far, how fast and when things move: dwells, quick returns, strokes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ ROCKER = 0.95
 """Strength of a rocker's return beside that of a slider, which is what a machine is made for."""
 COSINE = 1e-6
 """Part of a stroke by which a motion may miss a cosine."""
-TOLD = 1.03
+LEAST_RATIO = 1.03
 """Ratio of the two ways from which on one is worth a word."""
 
 
@@ -70,7 +70,7 @@ def dwell(seen: Seen, output: Output) -> Iterator[Insight]:
 
 
 def rests(seen: Seen, size: Array, part: float) -> list[tuple[float, float]]:
-    """Return start and end (s) of the times in which a rate (T,) is below a part of its largest, longest first.
+    """Return start and end (s) of times in which a rate (T,) is small, longest first.
 
     Between the samples of rest and of motion the beginning is found from the samples beyond.
     """
@@ -127,15 +127,13 @@ def quick_return(seen: Seen, output: Output) -> Iterator[Insight]:
     reversals = [(at, sign) for at, sign in seen.crossings(output.rate) if at < seen.time[0] + turn * (1 - 1e-9)]
     if len(reversals) != 2:
         return
-    (first, sign), (second, _) = reversals
-    one, other = (second - first, turn - (second - first))
-    if sign < 0:
-        one, other = other, one  # one: on the way to larger values
-    slow, fast = max(one, other), min(one, other)
+    (first, _), (second, _) = reversals
+    ways = (second - first, turn - (second - first))
+    slow, fast = max(ways), min(ways)
     ratio = slow / fast
     starts = first if (second - first) == slow else second
     angles = [TURN * part / turn for part in (slow, fast)]
-    if ratio < TOLD:
+    if ratio < LEAST_RATIO:
         if ratio < ALIKE and output.slides:
             yield insight(
                 "even_return", ratio, "", (first, second), 0.2, bodies=(output.body, crank.body),
@@ -152,7 +150,7 @@ def quick_return(seen: Seen, output: Output) -> Iterator[Insight]:
 
 
 def halves(seen: Seen, output: Output) -> Iterator[Insight]:
-    """Yield that a slider moves exactly as a cosine of its crank, or how long it is in the outer half of its stroke."""
+    """Yield that a slider moves as a cosine of its crank, or how long it is in its outer half."""
     crank = seen.input
     if crank is None or not crank.is_even or not seen.repeats or not output.slides:
         return

@@ -10,7 +10,7 @@ from matplotlib.transforms import blended_transform_factory
 from render.magnitudes import centre_of_mass, energy_floor, power_floor, without_noise
 from render.plots.measures import Horizon, horizon
 from render.plots.pages.motion import draw
-from render.plots.style import INK, PARTS, QUIET, page, rows, told
+from render.plots.style import INK, PARTS, QUIET, insight_over, page, rows
 from shared.contract import EventMark, Motion
 from shared.contract.quantity import counted, written
 
@@ -30,7 +30,7 @@ def energy(motion: Motion) -> Figure:
     gained = without_noise(np.asarray(motion.energy.potential) - motion.energy.potential[0], floor)
     given, rate = powers(motion)
     impacts = sorted(_impacts(motion, floor), key=lambda event: event.energy)
-    figure = page(motion.mechanism, "energy and power", statement(motion), told(motion, *ENERGIES))
+    figure = page(motion.mechanism, "energy and power", statement(motion), insight_over(motion, *ENERGIES))
     upper, lower = rows(figure, 2)
     lines = [("kinetic", kinetic, PARTS[0]), ("Δ potential", gained, PARTS[1])]
     draw(upper, over, "energy", "J", [*lines, ("total", kinetic + gained, INK)], floor=floor)

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from render.magnitudes import NOISE, Crank, crank_of, force_scale, speed_scale, without_noise
 from render.plots.measures import Horizon, cut, dress_axis, dress_plane, horizon, mark, turned
-from render.plots.style import FAINT, INK, LABELLED, PARTS, QUIET, Labels, ink_of, label_ends, page, rows, told
+from render.plots.style import FAINT, INK, LABELLED, PARTS, QUIET, Labels, ink_of, insight_over, label_ends, page, rows
 from render.report.written import first_peak, speed
 from shared.contract import BodyMotion, Motion, PointMotion
 from shared.contract.quantity import figures, written
@@ -40,7 +40,7 @@ def bodies(motion: Motion) -> Figure:
         motion.mechanism,
         "angles of the bodies",
         "angle, angular velocity and angular acceleration",
-        told(motion, *TURNING),
+        insight_over(motion, *TURNING),
     )
     kinds = (("theta", "angle", "°"), ("omega", "velocity", "rad/s"), ("alpha", "acceleration", "rad/s²"))
     over = horizon(motion)
@@ -254,7 +254,7 @@ def path(motion: Motion, skeleton: Skeleton) -> Figure:
         motion.mechanism,
         "path",
         f"{len(skeleton.poses)} poses and dots in equal times over {_span(motion)}; the first pose is drawn strong",
-        told(motion, *DRAWN),
+        insight_over(motion, *DRAWN),
     )
     axes = figure.add_axes((0.075, 0.085, 0.9, 0.775))
     axes.set_aspect("equal", adjustable="datalim")

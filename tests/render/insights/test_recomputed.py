@@ -24,9 +24,9 @@ from tools.models.motions import bouncing_ball, four_bar_motion
 MOTION = four_bar_motion()
 
 
-def of_kind(found: list[Insight], kind: str) -> Insight:
+def of_kind(findings: list[Insight], kind: str) -> Insight:
     """Return the first insight of a kind."""
-    return next(each for each in found if each.kind == kind)
+    return next(each for each in findings if each.kind == kind)
 
 
 # -- causes ----------------------------------------------------------------------------------------------------------
@@ -118,11 +118,11 @@ def test_the_largest_reaction_is_told_with_its_time() -> None:
 
 
 def test_they_are_ranked_and_the_second_of_a_kind_counts_half() -> None:
-    found = insights(MOTION)
-    telling = [each.telling for each in found]
+    findings = insights(MOTION)
+    telling = [each.telling for each in findings]
     assert telling == sorted(telling, reverse=True)
     seen: dict[str, int] = {}
-    for each in found:
+    for each in findings:
         count = seen.get(each.kind, 0)
         seen[each.kind] = count + 1
         assert each.telling == pytest.approx(WEIGHTS[each.kind] * each.strength * ANEW**count)
@@ -166,10 +166,10 @@ SMALL_TALK = ("stroke", "bend", "reach", "even_return", "period", "energy_kept")
 @pytest.mark.parametrize("name", mechanism_names())
 def test_every_mechanism_of_the_gallery_has_three_insights_that_are_not_trivial(name: str) -> None:
     solution, sources = solve(name, None)
-    found = insights(to_motion(solution, None, "0" * 64, {}, sources))
-    telling = [each for each in found if each.kind not in SMALL_TALK]
-    assert len({each.kind for each in telling}) >= 3, [each.sentence() for each in found]
-    for each in found:
+    findings = insights(to_motion(solution, None, "0" * 64, {}, sources))
+    telling = [each for each in findings if each.kind not in SMALL_TALK]
+    assert len({each.kind for each in telling}) >= 3, [each.sentence() for each in findings]
+    for each in findings:
         for language in ("en", "de"):
             said = each.sentence(language)
             assert len(said) <= LONGEST, said

@@ -72,9 +72,9 @@ def _busy(scenery: Scenery) -> float:
 
 
 def _joint(scenery: Scenery) -> str | None:
-    """Return the joint that is asked for; else where most happens: where bodies meet before pins, above before below.
+    """Return the joint that is asked for, else the one where most happens.
 
-    A pin that stands comes last.
+    Where bodies meet comes before pins, above before below; a pin that stands comes last.
     """
     joints = scenery.film.motion.joints
     if scenery.wishes.joint is not None:
@@ -145,9 +145,9 @@ def _aimed(scenery: Scenery, stand: Stand, place: tuple[float, float, float]) ->
 def _caption(scenery: Scenery, name: str) -> str:
     """Return what there is to say of a joint and is not the story's stop or its motion; else its name."""
     said = {scenery.reasons[0].template if scenery.reasons else "", scenery.of_motion and scenery.of_motion.template}
-    own = [each for each in (*scenery.told, *scenery.reasons) if name in each.joints and each.template not in said]
-    told = next((each for each in own if scenery.fits(each)), None)
-    return scenery.say("joint", name=plain(name)) if told is None else scenery.sentence(told)
+    own = [each for each in (*scenery.shows, *scenery.reasons) if name in each.joints and each.template not in said]
+    insight = next((each for each in own if scenery.fits(each)), None)
+    return scenery.say("joint", name=plain(name)) if insight is None else scenery.sentence(insight)
 
 
 # The section: the machine in motion as its shot cuts it open; the camera walks a little to the side of the cut.

@@ -87,9 +87,9 @@ def _shot(scenery: Scenery, passes: Ramp | Warp, seconds: float, again: float = 
 
 
 def _caption(scenery: Scenery) -> str:
-    told = scenery.of_motion
+    insight = scenery.of_motion
     span = scenery.film.clock.end - scenery.film.clock.start
-    return scenery.say("lasts", time=f"{figures(span, 3)} s") if told is None else scenery.sentence(told)
+    return scenery.say("lasts", time=f"{figures(span, 3)} s") if insight is None else scenery.sentence(insight)
 
 
 # The last shot: the machine comes to the pose of its poster and rests there, under its name.

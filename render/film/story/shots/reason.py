@@ -177,8 +177,8 @@ def loop(scenery: Scenery, seconds: float) -> Shot:
     text = "" if what is None else scenery.wishes.caption or scenery.sentence(what)
     name = plain(scenery.film.motion.mechanism.partition("-")[0])
     name = f"{name[:1].upper()}{name[1:]}. "
-    told = scenery.of_motion
-    name += scenery.say("lasts", time=f"{figures(period, 3)} s") if told is None else scenery.sentence(told)
+    insight = scenery.of_motion
+    name += scenery.say("lasts", time=f"{figures(period, 3)} s") if insight is None else scenery.sentence(insight)
     labels = notes(scenery, picture(begins - 0.05)) if scenery.forces is not None and what is not None else ()
     rows = [Caption(0.3, max(stop - 0.5, 0.8), name), Caption(stop - 0.3, min(begins + 0.5, seconds), text)]
     captions = tuple(row for row in rows if row.text and row.end - row.start > 0.6)

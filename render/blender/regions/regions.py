@@ -36,14 +36,14 @@ DARKENED = -0.95
 """Light that what moves may take, at most, in parts of what there was."""
 SMOOTH = 2.0
 """Pixels of the small picture over which the light of what moves is smooth (the deviation of a Gaussian)."""
-DIFFERENT, NEAR = 4.0, 3
+DIFFERENT, NEAR = 5.0, 3
 """Parts of 255 by which a frame may differ from the plate in its light, and the pixels of the small picture, square,
 over which means are taken."""
 MIRRORS = 0.1
 """Part of the light that a surface mirrors above which it is rendered wherever its light changes: metal."""
 CLOSED = 2
 """Half the width of gaps in a region that are rendered as well: the denoiser needs its neighbours."""
-SPECK = 16
+SPECK = 24
 """Pixels of a region, and of a hole in one, at least: smaller ones are noise."""
 MARGIN, BLEND = 2, 1
 """Pixels of the small picture around what differs, and how many of these region and plate take to become each other."""

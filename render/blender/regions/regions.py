@@ -36,7 +36,7 @@ DARKENED = -0.95
 """Light that what moves may take, at most, in parts of what there was."""
 SMOOTH = 2.0
 """Pixels of the small picture over which the light of what moves is smooth (the deviation of a Gaussian)."""
-DIFFERENT, NEAR = 5.0, 3
+DIFFERENT, NEAR = 4.0, 3
 """Parts of 255 by which a frame may differ from the plate in its light, and the pixels of the small picture, square,
 over which means are taken."""
 MIRRORS = 0.1

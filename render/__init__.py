@@ -3,5 +3,5 @@
 from shared.stage.paths import ROOT
 
 _INSIGHTS = ROOT / "render" / "insights"
-FRAME_SOURCES = (ROOT / "render" / "magnitudes.py", _INSIGHTS, *sorted((_INSIGHTS / "languages").glob("*.toml")))
+FRAME_SOURCES = (ROOT / "render" / "magnitudes.py", _INSIGHTS, *sorted(_INSIGHTS.glob("*.toml")))
 """Sources of magnitudes and insights: stages that show them are made again when these change."""

@@ -313,12 +313,12 @@ class _March:
         parts = max(1, int(np.ceil(STEPS_OF_METHOD * steps)))
         edges = np.linspace(begin, end, (min(parts, USUAL) if self.run.method.fixed_step else parts) + 1)
 
-        def way(edges: np.ndarray) -> tuple[np.ndarray, Any]:
+        def way(edges: np.ndarray) -> tuple[np.ndarray, float, Any]:
             nodes = nodes_of(edges, NOWHERE)
             every = np.union1d(nodes, inside)
             y = self._repeated(first.y, every, end)
             line = self._carried(nodes, y[np.searchsorted(every, nodes)], begun)
-            return line.errors_of(inside), lambda: (line, y[np.searchsorted(every, inside)])
+            return line.errors_of(inside), line.noise, lambda: (line, y[np.searchsorted(every, inside)])
 
         (line, y), error = refined_to_error(way, edges, False, self.name)
         self.error = max(self.error, error)

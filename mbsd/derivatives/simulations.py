@@ -41,7 +41,7 @@ from mbsd.derivatives.smooth.smooth_motion import (
 )
 from mbsd.dynamics.prepare.prepare import prepare_dynamics, started
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.repeated import Outputs, Repeated
+from mbsd.dynamics.repeated import Course, Outputs, Repeated
 from mbsd.kinematics.pose.held_values import independent_rows
 from mbsd.kinematics.pose.initial import Initial
 from mbsd.kinematics.pose.phases import take_decided
@@ -81,6 +81,7 @@ class SimulationTangents:
         reached = grid[grid <= first.t[-1]]
         self._variants: list[Variants] | None = None
         self._both: BothSides | None = None
+        self._autonomous: bool | None = None
         self._met = np.append(
             first.t[:-1][np.diff(first.t) <= 0.0], first.t[len(first.t) - 1 :][first.t[-1] > reached[-1]]
         )
@@ -126,8 +127,8 @@ class SimulationTangents:
 
     # -- ways to the tangents --------------------------------------------------------------------------------------
 
-    def _in_independent_coordinates(self, edges: np.ndarray) -> tuple[np.ndarray, Finish]:
-        """Errors of steps between edges, and what evaluates the tangents at outputs. Raises NotSmooth."""
+    def _in_independent_coordinates(self, edges: np.ndarray) -> tuple[np.ndarray, float, Finish]:
+        """Errors of steps between edges, noise, and what evaluates the tangents at outputs. Raises NotSmooth."""
         ready = self._runs.ready
         coordinates = suits(ready)
         if self._first.q is None or ready is None or coordinates is None or has_kinks(self.terms):
@@ -137,7 +138,7 @@ class SimulationTangents:
             arrays = coordinates.copied(self._runs.tolerance)
             self._both = BothSides(self.m, ready, coordinates, arrays, self.variation, self._numbers, asked is None)
         both = self._both
-        independent = IndependentTangents(ready, coordinates, both)
+        independent = IndependentTangents(ready, coordinates, both, self._is_autonomous(_along(self._first)))
         line, needed = independent.carry(self._first, nodes_of(edges, self._met)), self._needed(self._grid)
 
         def finish() -> Tangents | None:
@@ -157,9 +158,9 @@ class SimulationTangents:
                 self.slopes[label] = np.moveaxis(np.tensordot(weights, of(motions), axes=1), 0, -1)
             return None
 
-        return line.errors_of(self._grid[needed]), finish
+        return line.errors_of(self._grid[needed]), line.noise, finish
 
-    def _between_looks(self, edges: np.ndarray) -> tuple[np.ndarray, Finish]:
+    def _between_looks(self, edges: np.ndarray) -> tuple[np.ndarray, float, Finish]:
         """The same of a smooth motion in reference coordinates. Raises NotSmooth."""
         if self._first.q is None:
             raise NotSmooth
@@ -167,7 +168,7 @@ class SimulationTangents:
         whole = between(self._first, np.union1d(nodes, self._grid))
         rows = self._outputs(whole, self._grid)
         needed = self._needed(self._grid)
-        made, errors = self._tangents_at(whole, rows[needed], nodes)
+        made, errors, noise = self._tangents_at(whole, rows[needed], nodes)
         if self._off > CLOSE:
             raise NotSmooth
 
@@ -175,15 +176,15 @@ class SimulationTangents:
             self._keep_simulation(self._recorded().solve(), needed)
             return made
 
-        return errors, finish
+        return errors, noise, finish
 
-    def _at_nodes(self, edges: np.ndarray) -> tuple[np.ndarray, Finish]:
+    def _at_nodes(self, edges: np.ndarray) -> tuple[np.ndarray, float, Finish]:
         """The same of any motion, simulated at the nodes."""
         nodes, grid = nodes_of(edges, self._met), self._grid
         whole = motion_of(self._runs(np.union1d(nodes, apart(grid, self._met, self.span[1] - self.span[0]))))
         rows = self._outputs(whole, grid)
         needed = self._needed(whole.t[rows])
-        made, errors = self._tangents_at(whole, rows[needed], nodes)
+        made, errors, noise = self._tangents_at(whole, rows[needed], nodes)
 
         def finish() -> Tangents:
             assert whole.solution is not None
@@ -197,7 +198,13 @@ class SimulationTangents:
                 made.v[:, -1] += self.along.a[-1] * self.ends[:, None]
             return made
 
-        return errors, finish
+        return errors, noise, finish
+
+    def _is_autonomous(self, along: Along) -> bool:
+        """Return True if time itself changes nothing along the motion; found once."""
+        if self._autonomous is None:
+            self._autonomous = self.terms.is_autonomous(along)
+        return self._autonomous
 
     def _recorded(self) -> Outputs:
         """The motion that was looked at, at all outputs."""
@@ -232,8 +239,8 @@ class SimulationTangents:
 
     # -- nodes -----------------------------------------------------------------------------------------------------
 
-    def _tangents_at(self, whole: Motion, rows: np.ndarray, nodes: np.ndarray) -> tuple[Tangents, np.ndarray]:
-        """Tangents at some rows of the simulation, and the error that each step between nodes adds."""
+    def _tangents_at(self, whole: Motion, rows: np.ndarray, nodes: np.ndarray) -> tuple[Tangents, np.ndarray, float]:
+        """Tangents at some rows of the simulation, the error that each step between nodes adds, and noise."""
         asked, known = np.zeros(len(whole.t), bool), np.isin(whole.t, nodes)
         asked[rows] = True
         begins = np.append(True, np.diff(whole.t) <= 0.0)
@@ -245,7 +252,9 @@ class SimulationTangents:
         q, v = self._begun()
         parts: list[Tangents] = []
         errors: list[np.ndarray] = []
+        noise: list[float] = []
         self.ends, self._off = None, 0.0
+        autonomous = self._is_autonomous(along)
         compact = self.terms.rows(along)[2]
         shared = self._unshare(along, compact, edges)
         held = [held_between(self.terms, self.variants, along.take(slice(a, b))) for a, b in pairwise(edges)]
@@ -257,7 +266,7 @@ class SimulationTangents:
         for k, (a, b) in enumerate(pairwise(edges)):
             at, ends = slice(a, b), None
             stretch = self._stretch(along.take(at), compact[at], asked[at], known[at])
-            stretch.solved = whole.solution is not None
+            stretch.solved, stretch.autonomous = whole.solution is not None, autonomous
             if changes is not None and whole.solution is not None:
                 own, ends = next(changes)
                 stretch.own = own if held[k][0] is self.terms else None
@@ -270,6 +279,7 @@ class SimulationTangents:
                 )
             made = FreeTangents(held[k][0], stretch, held[k][1]).carry(q, v)
             errors.append(made.errors)
+            noise.append(made.noise)
             self._off = max(self._off, made.off)
             parts.append(made.asked)
             parts[-1].lam[..., shared[k]] = np.nan  # how contacts at rest share their friction changes, too
@@ -281,7 +291,8 @@ class SimulationTangents:
                 if jumps[k].ends:
                     self.ends = times_moved
         again = np.unique(rows, return_inverse=True)[1]  # two outputs may be nearer to an event than rounding
-        return Tangents(*(part[:, again] for part in joined(parts).parts())), np.concatenate(errors)
+        tangents = Tangents(*(part[:, again] for part in joined(parts).parts()))
+        return tangents, np.concatenate(errors), float(np.linalg.norm(noise))
 
     def _changes(self, along: Along, compact: np.ndarray, edges: list[int]) -> Iterator[tuple[Left | None, Left]]:
         """By stretch, how the equations change with the numbers at the held motion, and at its first and last node.
@@ -372,6 +383,12 @@ class SimulationTangents:
         events = () if whole.solution is None else whole.solution.events
         ended = bool(events) and events[-1].what == "end"
         return np.append(rows, len(whole.t) - 1) if ended and rows[-1] < len(whole.t) - 1 else rows
+
+
+def _along(course: Course) -> Along:
+    """Return a smooth course as a motion whose multipliers are unknown."""
+    assert course.q is not None
+    return Along(course.t, course.q, course.v, course.a, np.zeros((len(course.t), 0)))
 
 
 def _state_of(initial: Initial) -> tuple[np.ndarray, np.ndarray]:

@@ -1,11 +1,12 @@
 """Causes of a joint's reaction at one moment: its parts from gas, springs, loads, muscles, contact, weight and inertia.
 
-With d'Alembert's inertia forces all bodies are in balance. Reactions follow linearly from what loads the bodies:
+Reactions follow linearly from what loads the bodies. With each load alone the bodies would accelerate as the joints
+and drivers let them:
 
-    A u + w = 0      u: sizes of reactions and driver efforts      w: forces and moments on all bodies about the origin
+    M a - A u = w      A' a = 0      u: sizes of reactions and driver efforts      w: forces and moments on all bodies
 
-and so each kind of load has its own part of each reaction; the parts add up to it. They are known only where that sum
-is the reaction of data.json, which fails where joints are redundant.
+What is left of the reaction of data.json is the part of inertia: of speeds, and of what drivers demand. The parts are
+known only where A and all loads together give back that reaction, which fails where joints are redundant.
 """
 
 from __future__ import annotations
@@ -31,23 +32,50 @@ def parts_of(seen: Seen, name: str, row: int) -> dict[str, float]:
     for joint_name, joint in seen.motion.joints.items():
         place = joint.acts or joint
         x, y = place.x[row], place.y[row]
+        if _is_rigid(seen, joint):
+            return {}
         for fx, fy, torque in _ways(seen, joint, row):
             if joint_name == name:
                 own.append((len(columns), np.array([fx, fy])))
             columns.append(_on_pair(index, joint.bodies, (fx, fy, torque + x * fy - y * fx)))
     for driver in seen.motion.drivers.values():
-        if driver.bodies is not None:
-            columns += [_on_pair(index, driver.bodies, way) for way in _effort(driver, row)]
+        bodies = driver.bodies or (("ground", seen.input.body) if seen.input else ("ground", "ground"))
+        columns += [_on_pair(index, bodies, way) for way in _effort(driver, row)]
     recorded = np.array([seen.motion.joints[name].fx[row], seen.motion.joints[name].fy[row]])
     size = float(np.hypot(*recorded))
     if not columns or not own or not size:
         return {}
-    loads = loads_of(seen, index, row)
-    sizes = np.linalg.lstsq(np.array(columns).T, -np.array(list(loads.values())).T, rcond=None)[0]
-    reactions = np.sum([np.outer(sizes[k], way) for k, way in own], axis=0)
-    if np.abs(reactions.sum(axis=0) - recorded).max() > GOOD * size:
+    loads, matrix = loads_of(seen, index, row), np.array(columns).T
+    everything = np.linalg.lstsq(matrix, -np.sum(list(loads.values()), axis=0), rcond=None)[0]
+    if np.abs(_reaction(own, everything) - recorded).max() > GOOD * size:
         return {}
-    return dict(zip(loads, (reactions @ recorded / size**2).tolist(), strict=True))
+    masses = _masses(seen, index, row)
+    count = len(matrix)
+    system = np.block([[masses, -matrix], [matrix.T, np.zeros((matrix.shape[1],) * 2)]])
+    given = {cause: values for cause, values in loads.items() if cause != "inertia"}
+    parts = {}
+    for cause, values in given.items():
+        right = np.concatenate([values, np.zeros(matrix.shape[1])])
+        answer = np.linalg.lstsq(system, right, rcond=None)[0]
+        if np.abs(system @ answer - right).max() > GOOD * np.abs(values).max():
+            return {}
+        parts[cause] = float(_reaction(own, answer[count:]) @ recorded) / size**2
+    return parts | {"inertia": 1.0 - sum(parts.values())}
+
+
+def _reaction(own: list[tuple[int, Array]], sizes: Array) -> Array:
+    """Return the force (2,) of a joint with these columns (N)."""
+    return np.sum([sizes[k] * way for k, way in own], axis=0)
+
+
+def _masses(seen: Seen, index: dict[str, int], row: int) -> Array:
+    """Return the masses of all bodies, for velocities of the points of the bodies that are at the origin."""
+    out = np.zeros((3 * len(index), 3 * len(index)))
+    for name, k in index.items():
+        body, centre = seen.motion.bodies[name], seen.centres[name]
+        x, y, m = float(centre.x[row]), float(centre.y[row]), body.mass
+        out[k : k + 3, k : k + 3] = [[m, 0, -m * y], [0, m, m * x], [-m * y, m * x, body.inertia + m * (x * x + y * y)]]
+    return out
 
 
 def loads_of(seen: Seen, index: dict[str, int], row: int) -> dict[str, Array]:
@@ -84,10 +112,10 @@ def _cause(force: ForceMotion) -> str:
         return "gas"
     if force.hydraulics is not None:
         return "oil"
-    if "spring" in force.kind or force.look in ("coil", "spiral"):
-        return "spring"
-    if "contact" in force.kind or force.kind == "tyre":
+    if force.measures == "gap":
         return "contact"
+    if np.any(force.potential):
+        return "spring"
     if force.drives and len(force.actions) == 2:
         return "drive"
     return "load"
@@ -111,11 +139,15 @@ def _ways(seen: Seen, joint: JointMotion, row: int) -> Iterable[Wrench]:
         angle = joint.shape.markers[0][2] + (seen.theta[first][row] if first in seen.theta else 0.0)
         across = (-math.sin(angle), math.cos(angle), 0.0)
         return (across, (0.0, 0.0, 1.0)) if joint.pair == "guide" else (across,)
-    if "weld" in joint.kind:
-        return (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
     wrench = np.array([joint.fx[row], joint.fy[row], (joint.acts or joint).torque[row]])
     size = float(np.abs(wrench).max())
     return (tuple((wrench / size).tolist()),) if size else ((0.0, 0.0, 1.0),)
+
+
+def _is_rigid(seen: Seen, joint: JointMotion) -> bool:
+    """Return True if a joint holds both bodies together in more ways than its recorded force tells."""
+    first, second = (seen.theta.get(body, np.zeros(1)) for body in joint.bodies)
+    return joint.pair is None and float(np.ptp(second - first)) < 1e-9 and (any(joint.fx) or any(joint.fy))
 
 
 def _effort(driver: DriverMotion, row: int) -> list[Wrench]:

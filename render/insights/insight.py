@@ -13,8 +13,8 @@ from typing import Literal, NamedTuple
 
 from shared.contract.quantity import figures, written
 
-LANGUAGES = Path(__file__).parent / "languages"
-"""A file of sentences for each language, named by its code; a translator adds one."""
+LANGUAGES = Path(__file__).parent
+"""Folder with a file of sentences for each language, named by its code; a translator adds one."""
 Sort = Literal["body", "joint", "point", "load"]
 
 
@@ -60,7 +60,7 @@ class Insight:
     strength: float
     """How far it is from what one expects, 0 .. 1."""
     template: str
-    """Key of its sentence in a file of languages/."""
+    """Key of its sentence in the file of a language."""
     values: Mapping[str, Value]
     """Values of the names in braces of that sentence."""
     telling: float = 0.0

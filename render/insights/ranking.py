@@ -15,15 +15,15 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from render.insights.energy import energy
 from render.insights.insight import Insight, Named, said, sentences, stem_of
-from render.insights.loads import loads
-from render.insights.passing import passing
-from render.insights.paths import paths
-from render.insights.ratios import ratios
+from render.insights.kinds.energy import energy
+from render.insights.kinds.loads import loads
+from render.insights.kinds.passing import passing
+from render.insights.kinds.paths import paths
+from render.insights.kinds.ratios import ratios
+from render.insights.kinds.shaking import balance
+from render.insights.kinds.travel import travel
 from render.insights.seen import Seen
-from render.insights.shaking import balance
-from render.insights.travel import travel
 from shared.contract import Motion
 
 WEIGHTS = {
@@ -34,6 +34,7 @@ WEIGHTS = {
     "transmission": 0.75, "pressure_angle": 0.8, "power_sign": 0.8, "peak_cause": 0.7, "effort_peak": 0.6,
     "peak_weight": 0.6, "ripple": 0.6, "gas": 0.75, "whirl": 0.7, "rolls": 0.7, "bend": 0.6, "cusp": 0.7,
     "crossing": 0.6, "no_effort": 0.7, "energy_kept": 0.6, "stroke": 0.55, "period": 0.5, "even_return": 0.4,
+    "rhythm": 0.8, "returns": 0.8, "climbs": 0.8,
     "difference": 0.9, "slide": 0.8, "cosine": 0.9, "halves": 0.8,
     "reach": 0.4,
 }  # fmt: skip

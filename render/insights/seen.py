@@ -129,7 +129,8 @@ class Seen:
     def level(self) -> list[str]:
         """Bodies that never turn, though neither guides nor locks keep them from it; of a guide's two the heavier."""
         kept, joints = {"ground"}, self.motion.joints.values()
-        locks = [joint.bodies for joint in joints if joint.pair == "guide" or "lock" in joint.kind]
+        locks = [joint.bodies for joint in joints
+                 if joint.pair == "guide" or not (joint.pair or any(joint.fx) or any(joint.fy))]  # fmt: skip
         locks += [driver.bodies for driver in self.motion.drivers.values() if driver.bodies and driver.unit == "rad"]
         while more := {body for pair in locks if set(pair) & kept for body in pair} - kept:
             kept |= more

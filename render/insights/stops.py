@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from render.insights.insight import Insight
-from render.insights.loads import LEVEL, first_peak
+from render.insights.kinds.loads import LEVEL, first_peak
 from render.insights.ranking import insights
 from render.insights.seen import Array, Seen, amount, insight, joint, load, point
 from render.insights.seen import body as body_named
@@ -16,14 +16,12 @@ from shared.contract import BodyMotion, Motion
 
 EDGE = 0.02
 """Part of a motion without a period at its start: a stop there has nothing before it, and comes after others."""
-SPREAD = ("dead_point",)
-"""Kinds whose first moment is worth a stop, although they last."""
 
 
 def stops(motion: Motion) -> list[Insight]:
     """Return what is worth a stop, the most telling first; then events and the peaks of joints and speeds."""
     found = insights(motion)
-    everything = [each for each in found if each.start == each.end or each.kind in SPREAD]
+    everything = [each for each in found if each.start == each.end or each.kind == "dead_point"]
     everything += [*_events(motion), *_reactions(motion), *_speeds(motion)]
     if motion.period is not None:
         return everything
@@ -36,7 +34,7 @@ def words_of(each: Insight) -> tuple[str, ...]:
     follower = each.values.get("follower")
     if each.kind == "dead_point" and follower is not None and not isinstance(follower, str):
         return tuple(f"{name} turns back" for name in getattr(follower, "names", ()))
-    if each.kind in ("impact", "event"):
+    if "what" in each.values or each.kind == "impact":
         return (f"{each.joints[0]}: {each.values.get('what', 'impact')}",)
     return each.joints
 
@@ -53,7 +51,7 @@ def _events(motion: Motion) -> Iterator[Insight]:
     """Yield events in their order, impacts by contacts with the hardest first."""
     hits: dict[str, tuple[float, float]] = {}
     for event in motion.events:
-        if event.what == "impact" and abs(event.impulse) > hits.get(event.name, (0.0, 0.0))[0]:
+        if event.what == "impact" and abs(event.impulse) > hits.get(event.name, (-1.0, 0.0))[0]:
             hits[event.name] = abs(event.impulse), event.time
     for name, (impulse, at) in sorted(hits.items(), key=lambda row: -row[1][0]):
         unit = f"{motion.contacts[name].effort_unit if name in motion.contacts else 'N'} s"

@@ -16,6 +16,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.transforms import blended_transform_factory
 from scipy.optimize import isotonic_regression
 
+from render.insights import insights
 from shared.contract import Motion
 
 # The look of every plot: one page, one set of colours, labels beside the lines they name.
@@ -62,6 +63,8 @@ RC: dict[Any, Any] = {
 }
 
 
+LETTERS = 125
+"""Letters of a sentence over a title, at most."""
 LONGEST = 12
 """Letters of a label that has room at the right; longer ones are smaller."""
 HALO = [withStroke(linewidth=3, foreground="white")]
@@ -78,14 +81,21 @@ def house_style() -> Iterator[None]:
         yield
 
 
-def page(mechanism: str, title: str, subtitle: str) -> Figure:
-    """Return an empty figure with its title, upper left."""
+def page(mechanism: str, title: str, subtitle: str, shows: str = "") -> Figure:
+    """Return an empty figure with its title, upper left, and over it a sentence on what it shows."""
     figure = Figure(figsize=SIZE)
     FigureCanvasAgg(figure)
     name = mechanism.replace("_", "-").capitalize()
     figure.text(0.035, 0.945, f"{name}: {title}", fontsize=15, fontweight="bold", va="center")
+    figure.text(0.035, 0.982, shows, fontsize=9, va="center")
     figure.text(0.035, 0.903, subtitle, fontsize=10, color=QUIET, va="center")
     return figure
+
+
+def told(motion: Motion, *kinds: str) -> str:
+    """Return the sentence of the most telling insight of these kinds that fits over a title; empty without any."""
+    sentences = (each.sentence() for each in insights(motion) if each.kind in kinds)
+    return next((sentence for sentence in sentences if len(sentence) <= LETTERS), "")
 
 
 def rows(figure: Figure, count: int) -> list[Axes]:

@@ -9,12 +9,9 @@ import numpy as np
 from render.insights.loops import LEAST, Loop, loops
 from render.report.written import Amounts, degrees, listed, moment, table, written
 from shared.contract import EventMark, Motion
-from shared.contract.quantity import figures
 
 # Transmission angle, dead points, stroke and Grashof's condition in sentences.
 
-ALIKE = 1.005
-"""Ways whose times have a smaller ratio take equally long."""
 SAME = math.radians(1.0)
 """Dead points whose angles differ by less are one."""
 
@@ -56,11 +53,6 @@ def _loop_lines(loop: Loop, time: np.ndarray) -> list[str]:
             f"{loop.coupler} and {loop.crank} are in line with the crank at {places}: there the {loop.follower} turns "
             f"back, and could not drive. The {loop.follower} {does}."
         )
-        if len(passed) == 2 and np.ptp(loop.angle) > 1.9 * math.pi:
-            way = (dead[1][0] - dead[0][0]) / (time[-1] - time[0])
-            ratio = max(way, 1 - way) / min(way, 1 - way)
-            ways = f"One way takes {figures(ratio, 3)} times as long as the other."
-            lines[-1] += f" {ways if ratio > ALIKE else 'Both ways take equally long.'}"
     else:
         lines.append(f"There is no dead point in this motion: {loop.crank} and {loop.coupler} are never in line.")
     if not loop.slides:

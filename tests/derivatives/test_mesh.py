@@ -44,6 +44,44 @@ def test_errors_are_parts_of_what_has_grown_so_far() -> None:
     assert (line.errors > 0.0).all()
 
 
+def kink(t: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A = [-2 + 6 z^2, 0] along z = tanh(t), which solves z'' = 2 z^3 - 2 z, with its rates u and others that solve it.
+
+    The other solution of y' = A y is y = z' int dt / z'^2.
+    """
+    z, slope = np.tanh(t), 1.0 / np.cosh(t) ** 2
+    u = np.stack([slope, -2.0 * z * slope], axis=1)
+    area = 0.375 * t + np.sinh(2.0 * t) / 4.0 + np.sinh(4.0 * t) / 32.0  # of cosh^4
+    other = np.stack([slope * area, u[:, 1] * area + 1.0 / slope], axis=1)
+    return np.stack([-2.0 + 6.0 * z * z, 0.0 * t], axis=1)[:, None], u, other
+
+
+def test_rates_of_the_motion_itself_take_errors_of_steps_from_its_changes() -> None:
+    edges = np.linspace(-4.0, 4.0, 9)
+    t = np.append((edges[:-1, None] + np.diff(edges)[:, None] * PLACES[:NODES]).ravel(), 4.0)
+    a, u, other = kink(t)
+    b, slight = np.zeros((len(t), 1, 2)), np.full((2, 2), 1e-12)
+    for part in (0.0, 1e-6):  # by which the equations are off, as along a motion that is not quite one
+        begun = np.stack([3.0 * u[0], 3.0 * u[0] + other[0]], axis=1)
+        plain = carried(t, a * (1.0 + part), b, begun, slight)
+        line = carried(t, a * (1.0 + part), b, begun, slight, itself=u)
+        right = np.stack([3.0 * u, 3.0 * u + other], axis=2)
+        error = np.abs(line.y - right).max(axis=(0, 1)), np.abs(plain.y - right).max(axis=(0, 1))
+        assert error[0][0] < 1e-13
+        assert error[1][0] > 1e-8
+        assert plain.noise == 0.0
+        assert 0.0 < line.noise < 1e-3
+        assert np.allclose(line.at(t[::NODES]), line.y[::NODES], rtol=1e-12, atol=1e-12)
+
+
+def test_a_motion_that_is_rounding_corrects_nothing() -> None:
+    t = np.append((np.arange(3.0)[:, None] + PLACES[:NODES]).ravel(), 3.0)
+    a, b, slight = np.full((len(t), 1, 2), -1.0), np.zeros((len(t), 1, 1)), np.full((2, 1), 1e-9)
+    noise = np.random.default_rng(1).normal(0.0, 1e-17, (len(t), 2))
+    plain = carried(t, a, b, np.ones((2, 1)), slight)
+    assert (carried(t, a, b, np.ones((2, 1)), slight, itself=noise).y == plain.y).all()
+
+
 def test_coupled_equations_are_those_of_an_integrator() -> None:
     random = np.random.default_rng(3)
     constant, turning_part = random.normal(0.0, 8.0, (2, 3, 6))

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbsd import AssemblyError, LimitError, Mechanism, ModelError, constant_rate, measures
+from mbsd import AssemblyError, LimitError, Mechanism, ModelError, SimulationError, constant_rate, measures
 
 G = 9.80665
 DOWN = -math.pi / 2
@@ -262,3 +262,22 @@ def test_wheels_inside_each_other_are_refused_with_the_distance() -> None:
         m.over(a.origin, 0.0)
     with pytest.raises(ModelError, match="it must be a marker"):
         m.over(a, 0.1)
+
+
+@pytest.mark.parametrize("taut", [True, False])
+def test_a_point_that_runs_into_its_wheel_ends_the_motion(taut: bool) -> None:
+    """A load is thrown up along a guide that leads into the wheel."""
+    m = Mechanism("meet")
+    pulley, load = wheel(m, "pulley", 0, 0, 1.0, 0.1), hanging(m, "load", -0.05, -1.0, 1.0)
+    m.start_moving(load=(0, 6.0, 0))
+    m.cable("rope", [load.origin, m.over(pulley.origin, 0.1)], taut=taut)
+    with pytest.raises(SimulationError, match=r"wheels of cable 'rope' meet at t = 0\.1[58].*needs 0\.1 m"):
+        m.simulate(1.0, steps=10)
+
+
+def test_a_slack_span_that_starts_inside_its_wheel_is_refused() -> None:
+    m = Mechanism("inside")
+    pulley, load = wheel(m, "pulley", 0, 0, 1.0, 0.1), hanging(m, "load", 0.0, -0.05, 1.0)
+    m.cable("rope", [load.origin, m.over(pulley.origin, 0.1)], taut=False)
+    with pytest.raises(AssemblyError, match=r"0\.05 m apart.*more than 0\.1 m"):
+        m.simulate(1.0, steps=10)

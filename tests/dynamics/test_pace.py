@@ -18,6 +18,7 @@ import pytest
 from mbsd import Mechanism, ModelError, SimulationError
 from mbsd.dynamics.runs import motion, run
 from mbsd.dynamics.runs import steps as pace
+from mbsd.dynamics.runs.diagnosis import Look, creeps_to
 from mbsd.measures import final
 
 
@@ -154,6 +155,39 @@ def test_steps_that_creep_towards_a_change_point_end_with_its_time(monkeypatch: 
     monkeypatch.setattr(motion, "advance", advance)
     with pytest.raises(SimulationError, match=r"no longer advances at t = 0\.\d+ s.* Look for a pose that is singular"):
         m.simulate(1.34, steps=60, tolerance=1e-10, formulation="reference")
+
+
+def looks(times: list[float], steps: list[int]) -> list[Look]:
+    """Looks at the end of so many steps, of which the last 2000 took these times (s)."""
+    return [Look(count, time / 2000.0) for count, time in zip(steps, times, strict=True)]
+
+
+DOUBLED = [2000, 4000, 8000, 16000]
+
+
+@pytest.mark.parametrize(
+    ("passed", "known"), [([4.8e-5, 1.5e-5, 5.2e-6, 1.56e-6], 0.75421), ([3.6e-6, 2.1e-6, 1e-6, 3.6e-7], None)]
+)
+def test_steps_that_shorten_for_ever_tell_where_they_end(passed: list[float], known: float | None) -> None:
+    """Two rows of inexact parallelograms: one is known to creep after three looks, the other not after four."""
+    ends = creeps_to(looks(passed, DOUBLED)[:3], 0.754171, 1.07)
+    if known is None:
+        assert ends is None
+        assert creeps_to(looks(passed, DOUBLED), 0.754171, 1.07) is None
+    else:
+        assert ends == pytest.approx(known, abs=5e-5)
+    assert creeps_to(looks(passed, DOUBLED)[:2], 0.754171, 1.07) is None
+
+
+def test_steps_that_shorten_but_get_there_do_not_creep() -> None:
+    growing = looks([1e-4, 5e-5, 2.5e-5, 1.25e-5], DOUBLED)  # as frequencies that grow exponentially ask for
+    assert creeps_to(growing, 0.5, 1.0) is None
+    entering = looks([1e-2, 1e-5, 0.9e-5, 0.9e-5], DOUBLED)  # a stiff stretch
+    assert creeps_to(entering, 0.5, 1.0) is None
+    near = looks([1e-3, 1e-4, 1e-5], DOUBLED[:3])
+    assert creeps_to(near, 0.5, 0.5 + 5e-5) is None, "the end is nearer"
+    assert creeps_to(near, 0.5, 1.0) is not None
+    assert creeps_to(looks([0.0, 1e-5, 0.0], DOUBLED[:3]), 0.5, 1.0) is None
 
 
 def pushed(torque, mass: float = 1.0) -> Mechanism:

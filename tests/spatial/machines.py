@@ -130,12 +130,15 @@ def bricard() -> Mechanism:
     corners = np.array(
         [[0, 0, 0], [1, 0, 0], [1, -1, 0], [1, -1, 1], [0, -1, 1], [0, 0, 1]], float
     )  # hinges along x, y, z in turn, each across both of its rods
-    names = [m.ground]
-    rods = [m.rod(f"rod {k}", corners[k - 1], corners[k], mass=1.0, radius=0.05) for k in range(1, 6)]
-    links = [*names, *rods]
+    links = [m.ground]
+    for k in range(1, 6):
+        along = np.abs(corners[k] - corners[k - 1])
+        moments = along * 0.02 / 12 + (1 - along) * 1.01 / 12
+        links.append(m.body(f"rod {k}", 1.0, com=(corners[k - 1] + corners[k]) / 2, inertia=moments))
     axes = [(0, 1, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 0)]
     for k in range(6):
         m.revolute(f"hinge {k}", links[k], links[(k + 1) % 6], at=corners[k], axis=axes[k])
+    m.trace("P3", links[3], at=corners[3])
     return m
 
 

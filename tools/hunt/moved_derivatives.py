@@ -13,6 +13,7 @@ motion is nudged.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -42,6 +43,8 @@ LOOSE = 0.03
 AWAY = 2e-3
 """Part of the size by which a place is moved that must be possible: more than what radii may be rounded by."""
 TOLERANCE = 1e-9
+DOUBTFUL = "derivatives along this simulation"
+"""What a warning says of derivatives with few digits."""
 HEALTHY = 0.02
 """Singularity margin above which nothing gives reason to refuse."""
 
@@ -190,15 +193,24 @@ def beside_its_own(
     times, words = np.linspace(first.t[0], first.t[-1], OUTPUTS + 1), moved(m, rng, pose, may_reorder)
     same = Moved(m, np.eye(2), np.eye(2))
 
+    doubts: list[str] = []
+
     def slopes(words: Moved, m: Mechanism) -> tuple[np.ndarray | None, MechanismError | None]:
         of, to = asked.names_of_quantities(words), asked.names_of_numbers(words)
-        derived, error = attempt(lambda: m.sensitivities(of, to, times=times, simulate=is_free, tolerance=TOLERANCE))
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            derived, error = attempt(
+                lambda: m.sensitivities(of, to, times=times, simulate=is_free, tolerance=TOLERANCE)
+            )
+        doubts.extend(str(one.message) for one in said if DOUBTFUL in str(one.message))
         every = None if derived is None else np.stack([derived[label] for label in of], axis=1)
         return (None if every is None else asked.carried_back(every, words)), error
 
     own, refused = slopes(same, m)
     other, error = slopes(words, words.m)
     margin = float(first.singularity_margin.min())
+    if doubts:
+        return Outcome(name, UNCLEAR, "said to have few digits", doubts[0])
     if own is None or other is None:
         state = REFUSED if own is other or margin < HEALTHY else WRONG
         return Outcome(name, state, f"refused ({type(refused or error).__name__})", str(refused or error))

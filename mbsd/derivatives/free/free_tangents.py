@@ -59,6 +59,8 @@ class Stretch:
     """(T,) whether tangents are wanted there."""
     nodes: np.ndarray
     """(T,) whether it is one of the nodes of whole steps, the first and the last among them."""
+    autonomous: bool = False
+    """True if time itself changes nothing, so that the motion's own rates are one of its changes."""
     solved: bool = True
     """True if accelerations and multipliers are known; else accelerations are estimates."""
     own: Left | None = None
@@ -92,6 +94,8 @@ class Carried:
     """(P, m) lam' there."""
     errors: np.ndarray
     """(d, 2) what each step adds, and what it leaves out inside alone, as parts of the largest so far."""
+    noise: float
+    """Part of them at the last node that errors of the motion leave unknown."""
     off: float
     """By how much accelerations were other than about what was known, as part of the largest."""
 
@@ -119,6 +123,7 @@ class FreeTangents:
         self.terms, self.along, self.rows, self.every = terms, stretch.along, stretch.rows, every
         self.dependent, self.asked, self.compact = stretch.dependent, stretch.asked, stretch.compact
         self.nodes, self.solved, self.own = stretch.nodes, stretch.solved, stretch.own
+        self.autonomous = stretch.autonomous
         packed = terms.packed
         refuse_large(terms, len(self.along.t))
         self.scale = packed.column_scale()
@@ -135,7 +140,8 @@ class FreeTangents:
             q, v = parts[-1].q, parts[-1].v
             first += len(inverse) - 1
         errors, off = np.concatenate([part.errors for part in parts]), max(part.off for part in parts)
-        return Carried(joined([part.asked for part in parts]), q, v, parts[-1].lam, errors, off)
+        noise = float(np.linalg.norm([part.noise for part in parts]))
+        return Carried(joined([part.asked for part in parts]), q, v, parts[-1].lam, errors, noise, off)
 
     def _basis(self, first: int) -> tuple[np.ndarray, np.ndarray]:
         """Z (f, n) at node ``first``, and inverses of [J; Z] up to the last node, whole steps on, that it serves."""
@@ -189,6 +195,7 @@ class _Piece:
         self.fixed = np.ascontiguousarray(inverse[:, :, : len(self.rows)])
         self.free = np.ascontiguousarray(inverse[:, :, len(self.rows) :])
         self.f, self.n = len(basis), inverse.shape[1]
+        self.autonomous = whole.autonomous
         self.inertia, self._scale = self.terms.inertia[3:], 1.0 / whole.scale
         self.reach = self._reaches()
         self.effort = self._efforts(whole)
@@ -248,13 +255,19 @@ class _Piece:
             made.right[nodes],
             begun,
             slight_changes(self.f, fastest, np.array([variants.size for variants in self.every])),
+            itself=self._rates() if self.autonomous else None,
         )
         y, parts = line.at(self.along.t[at]), [np.zeros((len(self.every), *part.shape[1:])) for part in made[2:]]
         for out, part in zip(parts, made[2:], strict=True):
             combine(y, part, out)
         q, v, _, lam = (part[:, -1] for part in parts)
         errors = line.errors_of(self.along.t[self.asked])
-        return Carried(Tangents(*(part[:, :asked] for part in parts)), q, v, lam, errors, self.off)
+        return Carried(Tangents(*(part[:, :asked] for part in parts)), q, v, lam, errors, line.noise, self.off)
+
+    def _rates(self) -> np.ndarray:
+        """(8 d + 1, 2 f) rates of the motion itself at the nodes, in coordinates of the basis."""
+        along = self.along.take(self.nodes)
+        return np.concatenate([along.v[:, 3:] @ self.basis.T, along.a[:, 3:] @ self.basis.T], axis=1)
 
     def at_all(self, y: np.ndarray) -> Tangents:
         """Tangents at all times, from s and s' there: y (T, 2 f, P)."""

@@ -7,11 +7,18 @@ from velocities there, so that a step is solved for velocities alone. At ends of
 16; inside, where the polynomial of y' is integrated, of tenth. Legendre's coefficients of y' on the nodes tell the
 errors: where they fall as those of a smooth motion do, by the same factor from the fourth to the eighth as from there
 on, the ninth is what the step leaves out inside, the fourteenth at its end. Both are parts of the largest y so far:
-what errs while y is small grows with it. Source: Hairer, Wanner, Solving ODEs II, IV.5.
+what errs while y is small grows with it.
+
+Where time itself changes nothing, the rates u of the motion solve these equations, b apart: a motion that begins later
+by tau changes by tau u. A toggle makes u a million times as large within no time, and y with it; behind it little of y
+is left, in which errors of that moment remain. So what a step errs in u, which is known, is taken from y as well, for
+the part tau u of it that is nearest to y. The known u err by as much, and what that is to the rest y - tau u, or to the
+last y if this is more, is left as noise. Source: Hairer, Wanner, Solving ODEs II, IV.5.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -43,6 +50,11 @@ WEIGHTS = weights_at(PLACES[1:])
 HALFWAY, LAST = _COEFFICIENTS[[NODES // 2, NODES]]
 """(9,) what makes Legendre's fourth and eighth coefficients of values at the nodes."""
 
+SLOW = 1e-6
+"""Part of the fastest rates of the motion below which rates are too slow to correct a step."""
+CONSISTENT = 1e-4
+"""Error of u in a step, as part of it, beyond which it corrects nothing: the step is too long, or u is rounding."""
+
 LATEST = 2.0 * legendre.legval(1.0, legendre.legder(_COEFFICIENTS))
 """(9,) weights of the values at the nodes in their slope at the end, for a step of length 1."""
 
@@ -58,18 +70,20 @@ class Carried:
     rates: np.ndarray
     errors: np.ndarray
     """(d, 2) what each step adds, and what it leaves out inside alone, as parts of the largest y so far."""
+    noise: float
+    """Part of the last y that errors of the motion itself leave unknown, however short steps are."""
 
     def at(self, times: np.ndarray) -> np.ndarray:
         """(R, n + k, c) y at times (R,) (s)."""
-        if len(times) == 1 and times[0] == self.t[-1]:
-            return self.y[-1:]
         edges = self.t[::NODES]
         step = np.clip(np.searchsorted(edges, times, side="right") - 1, 0, len(edges) - 2)
         length = edges[step + 1] - edges[step]
         weights = length[:, None] * weights_at((times - edges[step]) / length)
         rates = self.rates[_nodes_of(step)]
         grown = weights[:, None] @ rates.reshape(*weights.shape, -1)
-        return self.y[NODES * step] + grown.reshape(len(times), *self.y.shape[1:])
+        out = self.y[NODES * step] + grown.reshape(len(times), *self.y.shape[1:])
+        out[times == self.t[-1]] = self.y[-1]
+        return out
 
     def errors_of(self, times: np.ndarray) -> np.ndarray:
         """Return ``errors`` of y at times (R,) (s): steps without one of them inside leave out nothing there."""
@@ -111,23 +125,33 @@ def own_rates(matrix: np.ndarray, right: np.ndarray) -> OwnRates:
 
 def carried(
     t: np.ndarray, a: np.ndarray, b: np.ndarray, begun: np.ndarray, slight: np.ndarray,
-    kinematics: SameRates | OwnRates = SAME_RATES,
+    kinematics: SameRates | OwnRates = SAME_RATES, itself: np.ndarray | None = None,
 ) -> Carried:  # fmt: skip
     """Return y at nodes t (8 d + 1,) (s) from ``begun`` (n + k, c), and beyond.
 
     a (8 d + 1, k, n + k), b (8 d + 1, k, c). Errors are parts of the largest y so far, or of ``slight`` (n + k, c)
-    if that is more.
+    if that is more. ``itself`` (8 d + 1, n + k): rates of the motion, where they solve y' = A y (see the file).
     """
-    k, c = b.shape[1:]
-    out, rates = np.zeros((2, len(t), len(begun), c))
-    out[0] = begun
-    matrix, side = np.zeros((NODES * k, NODES * k)), np.zeros((NODES * k, c))
-    march(kinematics, t, np.ascontiguousarray(a), np.ascontiguousarray(b), WEIGHTS, matrix, side, out, rates)
+    k, c = b.shape[1], begun.shape[1]
+    if itself is None:
+        itself = np.zeros((0, len(begun)))
+    else:
+        b = np.append(b, np.zeros((len(t), k, 1)), axis=2)
+    out, rates = np.zeros((2, len(t), len(begun), b.shape[2]))
+    out[0, :, :c] = begun
+    matrix, side = np.zeros((NODES * k, NODES * k)), np.zeros((NODES * k, b.shape[2]))
+    taken = np.zeros(((len(t) - 1) // NODES, c, 2))
+    a, b = np.ascontiguousarray(a), np.ascontiguousarray(b)
+    march(kinematics, t, a, b, WEIGHTS, itself, matrix, side, taken, out, rates)
+    if len(itself):
+        out, rates = (np.ascontiguousarray(part[..., :c]) for part in (out, rates))
     largest = np.maximum.accumulate(np.abs(out), axis=0)[NODES::NODES]
     per = 1.0 / np.maximum(largest, slight)
     errors = np.zeros(((len(t) - 1) // NODES, 2))
     estimate(t, rates, per, HALFWAY, LAST, errors)
-    return Carried(t, out, rates, errors)
+    last = np.linalg.norm(np.maximum(np.abs(out[-1, -k:]), slight[-k:]), axis=0)
+    noise = np.linalg.norm(taken[..., 0] / np.maximum(taken[..., 1], last), axis=0).max(initial=0.0)
+    return Carried(t, out, rates, errors, float(noise))
 
 
 def _nodes_of(steps: np.ndarray) -> np.ndarray:
@@ -303,17 +327,67 @@ def fill_side(kinematics, h, a, b, weights, s, first, side):
                         row[c] += factor * start(kinematics, h, weights, s, coordinates, n, g, c)
 
 
+@internal
+def _size(u, f, h):
+    """Return the square of the size of u (n + k,): that of its velocities, and of its coordinates by a step h."""
+    size = 0.0
+    for k in range(u.shape[0]):
+        part = u[k] / h if k < u.shape[0] - f else u[k]
+        size += part * part
+    return size
+
+
+@internal
+def correct(itself, f, h, slow, y, taken):
+    """Take from y (9, n + k, c + 1) at the nodes of a step what its last column errs in ``itself`` (9, n + k).
+
+    taken (c, 2): the size of what is taken at the end, and that of what is left beside tau u.
+    """
+    coordinates = itself.shape[1] - f
+    last = y.shape[2] - 1
+    size = _size(itself[0], f, h)
+    for i in range(NODES + 1):
+        for k in range(itself.shape[1]):
+            y[i, k, last] -= itself[i, k]
+    error = _size(y[NODES, :, last], f, h)
+    if size < slow or error > CONSISTENT * CONSISTENT * _size(itself[NODES], f, h):
+        return
+    for c in range(last):
+        shift = 0.0
+        for k in range(itself.shape[1]):
+            shift += itself[0, k] * y[0, k, c] / (h * h if k < coordinates else 1.0)
+        shift /= size
+        rest = 0.0
+        for i in range(1, NODES + 1):
+            for k in range(itself.shape[1]):
+                y[i, k, c] -= shift * y[i, k, last]
+        for k in range(itself.shape[1]):
+            part = (y[NODES, k, c] - shift * itself[NODES, k]) / (h if k < coordinates else 1.0)
+            rest += part * part
+        taken[c, 0] = abs(shift) * math.sqrt(error)
+        taken[c, 1] = math.sqrt(rest)
+
+
 @kernel
-def march(kinematics, t, a, b, weights, matrix, side, out, rates):
+def march(kinematics, t, a, b, weights, itself, matrix, side, taken, out, rates):
     """Fill out and rates (8 d + 1, n + k, c) from out[0], by ``weights`` (8, 9); matrix and side are scratch.
 
-    a (8 d + 1, k, n + k), b (8 d + 1, k, c). Each step is solved for v at its nodes, of which q follows.
+    a (8 d + 1, k, n + k), b (8 d + 1, k, c). Each step is solved for v at its nodes, of which q follows. Where there
+    are rates of the motion, ``itself`` (8 d + 1, n + k), the last of the columns is theirs, and what is ``taken``
+    (d, c, 2) in steps is what ``correct`` gives.
     """
     f = b.shape[1]
     n = a.shape[2] - f
+    slow = 0.0
+    for i in range(itself.shape[0]):
+        for k in range(f):
+            slow = max(slow, SLOW * SLOW * itself[i, n + k] * itself[i, n + k])
     for first in range(0, t.shape[0] - 1, NODES):
         h = t[first + NODES] - t[first]
         own = slice(first, first + NODES + 1)
+        if itself.shape[0] > 0:
+            for k in range(itself.shape[1]):
+                out[first, k, out.shape[2] - 1] = itself[first, k]
         rate_at(kinematics, first, a[first], b[first], out[first], rates[first])
         fill_gain(kinematics, h, first, weights, out[first], rates[first])
         fill_matrix(kinematics, h, a[own], weights, matrix)
@@ -325,7 +399,10 @@ def march(kinematics, t, a, b, weights, matrix, side, out, rates):
                 for c in range(side.shape[1]):
                     node[n + k, c] = side[i * f + k, c]
             fill_coordinates(kinematics, h, weights, i, out[first], f, side, node)
-            rate_at(kinematics, first + 1 + i, a[first + 1 + i], b[first + 1 + i], node, rates[first + 1 + i])
+        if itself.shape[0] > 0:
+            correct(itself[own], f, h, slow, out[own], taken[first // NODES])
+        for i in range(1, NODES + 1):
+            rate_at(kinematics, first + i, a[first + i], b[first + i], out[first + i], rates[first + i])
 
 
 @kernel

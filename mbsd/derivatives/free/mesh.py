@@ -29,6 +29,8 @@ LOOKS = 400
 """Times, at least, at which the motion is looked at."""
 CLOSER = 16
 """Times in each step at which a motion is looked at again."""
+FAR_OFF = 1e6
+"""Error of a step, in shares of it, beyond which four parts would err too much as well: where a toggle is passed."""
 ROUNDING = 1e-12
 """Part of the duration below which two times are one."""
 
@@ -126,7 +128,7 @@ def refined(edges: np.ndarray, errors: np.ndarray, enough: float) -> np.ndarray:
     shares = np.array([enough / len(errors), enough])
     out = [edges[:1]]
     for (a, b), worst in zip(pairwise(edges), (errors / shares).max(axis=1), strict=True):
-        parts = 1 if worst <= 1.0 else 4 if worst > 64.0 else 2
+        parts = 1 if worst <= 1.0 else 2 if worst <= 64.0 else 4 if worst <= FAR_OFF else 16
         out.append(np.linspace(a, b, parts + 1)[1:])
     return np.concatenate(out)
 

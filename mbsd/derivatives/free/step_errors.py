@@ -25,24 +25,23 @@ DOUBTFUL = 1e-3
 MOST_STEPS = 20_000
 """Steps at most."""
 
+Result = TypeVar("Result")
+Way = Callable[[np.ndarray], tuple[np.ndarray, float, Callable[[], Result]]]
+"""Gives the errors (d, 2) of steps between edges, the part that errors of the motion leave unknown, what finishes."""
 Finish = Callable[[], Tangents | None]
 """Evaluates tangents at the outputs of which they are asked; None where that gave the slopes themselves."""
-Result = TypeVar("Result")
 
 
-def refined_to_error(
-    way: Callable[[np.ndarray], tuple[np.ndarray, Callable[[], Result]]], edges: np.ndarray, kinked: bool, name: str
-) -> tuple[Result, float]:
+def refined_to_error(way: Way[Result], edges: np.ndarray, kinked: bool, name: str) -> tuple[Result, float]:
     """Return tangents of ``name`` by one way, beginning with steps between ``edges`` (k,) (s), and their error.
 
-    ``way`` gives the errors (d, 2) of steps between edges, and what finishes them.
     ``kinked`` says that contacts by penalty are among the forces. The error is a part of the largest tangent.
     """
     before = error = 0.0
     least, waited = np.inf, 0
     part = OF_KINKS if kinked else 1.0
     for turn in range(MOST):
-        errors, finish = way(edges)
+        errors, noise, finish = way(edges)
         before, error = error, float(errors[:, 0].sum() + errors[:, 1].max())
         waited = 0 if error < 0.5 * least else waited + 1
         least = min(least, error)
@@ -59,7 +58,15 @@ def refined_to_error(
         warn(
             f"{name}: derivatives along this simulation are known to {error:.1g} of the largest at best, "
             "however close their nodes are. A force that jumps, or a curve that bends more tightly than the wheel "
-            "on it, does that: smooth it, or take differences of whole simulations",
+            "on it, does that: smooth it. A toggle that is passed within no time does it, too: take differences of "
+            "whole simulations",
             ModelWarning,
         )
-    return finish(), error
+    elif noise > DOUBTFUL:
+        warn(
+            f"{name}: derivatives along this simulation may err by {min(noise, 1.0):.1g} of themselves. It passes a "
+            "toggle, where they are so much larger that little of their digits is left. Take differences of whole "
+            "simulations, or masses and lengths that pass it less closely",
+            ModelWarning,
+        )
+    return finish(), max(error, noise)

@@ -173,6 +173,16 @@ class Terms:
         q, v = np.ascontiguousarray(along.q), np.ascontiguousarray(along.v)
         return loads_along(self.packed, self.loads, self.laws, along.t, q, v, along.approached, along.states)
 
+    def is_autonomous(self, along: Along) -> bool:
+        """Return True if time itself changes nothing: no driver, and the same forces at all other times of a motion."""
+        if self.packed.motions:
+            return False
+        if self.loads is None or not self.loads.total:
+            return True
+        here, count = self.applied(along), len(along.t)
+        others = (along.t[::-1], np.roll(along.t, count // 3 + 1))
+        return all(np.array_equal(here, self.applied(replace(along, t=t.copy()))) for t in others)
+
     def friction(self, along: Along, compact: np.ndarray, lam: np.ndarray) -> np.ndarray:
         """(T, 3 nb) friction of joints under multipliers lam (T, m)."""
         out = np.zeros_like(along.q)

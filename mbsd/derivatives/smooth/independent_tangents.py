@@ -61,9 +61,13 @@ States = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
 class IndependentTangents:
-    """Tangents of one smooth motion by numbers; their sides come nearer where they take bodies too far."""
+    """Tangents of one smooth motion by numbers; their sides come nearer where they take bodies too far.
 
-    def __init__(self, ready: PreparedDynamics, made: Embedded, both: BothSides) -> None:
+    ``autonomous`` says that time itself changes nothing.
+    """
+
+    def __init__(self, ready: PreparedDynamics, made: Embedded, both: BothSides, autonomous: bool) -> None:
+        self.autonomous = autonomous
         self.ready, self.made, self.both, self.every, self.arrays = ready, made, both, both.every, both.arrays
         self.alone = np.zeros(len(both.near))
         """How far (sizes, rad) bodies go with a side of each number alone, coordinates held."""
@@ -113,7 +117,8 @@ class IndependentTangents:
         y = np.concatenate([self.basis @ self.both.begun(part).T for part in range(2)])
         fastest = float(np.abs(speed).max(initial=0.0)) or 1.0
         slight = slight_changes(f, fastest, np.array(self.both.sizes))
-        return carried(t, matrix.transpose(0, 2, 1).copy(), right, y, slight)
+        itself = np.concatenate([speed, rates[:, 0]], axis=1) if self.autonomous else None
+        return carried(t, matrix.transpose(0, 2, 1).copy(), right, y, slight, itself=itself)
 
     def motion(self, along: Outputs, traces: Mapping[str, Marker]) -> Motions:
         """The motion itself."""

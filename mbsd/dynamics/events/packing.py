@@ -33,11 +33,10 @@ from mbsd.dynamics.switches import RunContact
 from mbsd.equations.joint_friction import FIRST
 from mbsd.equations.relative.equation import AT, MARKER_I, MARKER_J
 from mbsd.equations.relative.equation import ROW as RELATIVE_ROW
-from mbsd.kinematics.limits.free_wheels import HALF, MET
+from mbsd.kinematics.limits.free_wheels import HALF
 from mbsd.kinematics.pose import held_values, mobility
 from mbsd.model.body import Marker
 from mbsd.model.event import Event, Reaching
-from mbsd.model.teeth import with_radii
 
 NEAR = 1e-11
 """Gaps below this part of the size (rad) are closed; rates below it by 1 s are zero where bodies rest."""
@@ -196,11 +195,10 @@ def _friction_of(ready: PreparedDynamics, c: int, n3: int, rows: int) -> arrays.
 
 def _wheels_of(ready: PreparedDynamics, before: State) -> arrays.Wheels:
     """Return the wheels that may run into each other."""
-    pairs = ready.following.wheels.pairs
-    sized = [with_radii(joint.params) for joint, _, _ in pairs]
+    wheels = ready.following.wheels
     return arrays.Wheels(
-        np.array([(i, j) for _, i, j in pairs], np.int64).reshape(-1, 2),
-        np.array([MET * (params["radius_i"] + params["radius_j"]) for params in sized]),
+        np.array([(i, j) for _, i, j in wheels.pairs], np.int64).reshape(-1, 2),
+        np.array(wheels.near, float),
         np.array([HALF, SHORTEST, 0.0]),
         before,
     )

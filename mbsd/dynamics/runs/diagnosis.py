@@ -13,12 +13,16 @@ velocities, T = V / (dV/dt) is the time in which they double or so. Growth that 
 has T = (t_e - t) / p: it falls along a straight line that tells t_e, while T of exponential growth stays and that of
 usual motions is of the size of what is left. Steps follow it for ever, each a part of T.
 
+Steps may also shorten without such growth, towards a pose that reference coordinates do not pass. Where the n-th step
+is of the size n^-p, p > 1, all steps to come together last n h / (p - 1), however many they are.
+
 Source: Hairer, Wanner, Solving ODEs II, IV.2.
 """
 
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -53,6 +57,10 @@ NEEDLESS = 1e-5
 """Part of the time in which bodies move by the mechanism's size: shorter steps are not what the motion needs."""
 HOPELESS = 1e9
 """Steps of that sort that no one waits for."""
+CREEPING = 1.2
+"""Least power p by which steps that creep shorten."""
+NEVER = 0.1
+"""Part of the time left that steps which creep do not reach in all."""
 DIFFERENCE = 1e-6
 """Differences of velocities and coordinates, in sizes and rad."""
 MANY_BODIES = 100
@@ -66,8 +74,33 @@ class Stiffest(NamedTuple):
     rate: float
 
 
-def diagnosis(run: Run, state: State, h: float, left: float) -> str | None:
-    """Return the cause of steps of h (s), with the remedy, or None if the run may go on; ``left`` steps remain."""
+class Look(NamedTuple):
+    """How long steps were (s) after so many of them, since they became short."""
+
+    steps: int
+    length: float
+
+
+def creeps_to(looks: list[Look], time: float, end: float) -> float | None:
+    """Return the time (s), before ``end``, that no number of steps passes, or None where steps do not creep.
+
+    The last three of ``looks`` tell, each at twice as many steps as the one before; ``time`` (s) is that of the last.
+    """
+    last = looks[-3:]
+    if len(last) < 3 or not all(look.length > 0.0 for look in last):
+        return None
+    powers = [math.log(a.length / b.length) / math.log(b.steps / a.steps) for a, b in pairwise(last)]
+    if min(powers) < CREEPING:
+        return None
+    ahead = looks[-1].steps * looks[-1].length / (min(powers) - 1.0)
+    return time + ahead if ahead < NEVER * (end - time) else None
+
+
+def diagnosis(run: Run, state: State, h: float, left: float, ends: float | None = None) -> str | None:
+    """Return the cause of steps of h (s), with the remedy, or None if the run may go on.
+
+    ``left`` steps remain, or any number where they creep towards a time that ``ends`` them (s).
+    """
     cause = jump(run, state, h)
     slope = slope_at(run, state)
     if cause is not None or slope is None:
@@ -76,6 +109,11 @@ def diagnosis(run: Run, state: State, h: float, left: float) -> str | None:
         return None
     stiff = _stiffest(run, float(state.clock[TIME]), state.y, slope)
     if stiff is None or not STABILITY[0] < h * stiff.rate < STABILITY[1]:
+        if ends is not None:
+            return (
+                f"steps shorten towards t = {ends:.6g} s, and no force jumps or is stiff there. Look for a pose that "
+                "is singular, or loosen the tolerance."
+            )
         if left < HOPELESS:
             return None
         return "no force jumps or is stiff there. Look for a pose that is singular, or loosen the tolerance."
@@ -272,6 +310,7 @@ def refusal(run: Run, status: int, state: run_state.State) -> SimulationError:
     packed, method = run.ready.packed, run.method
     bodies = len(packed.body_names) - packed.states
     time, speeds = state.clock[run_state.TIME], np.abs(state.y[1].reshape(-1, 3)[1:bodies])
+    run.ready.following.wheels.refuse_met(float(time), state.y[0])
     fastest = packed.body_names[1 + int(np.argmax((speeds / [packed.size, packed.size, 1]).max(1)))]
     where = f"{packed.name}: {method.name} stops at t = {time:.6g} s, where '{fastest}' is fastest"
     if status == run_state.NO_CONVERGENCE:

@@ -2,8 +2,8 @@
 
 A run is examined when it would take many more steps at its present pace. It ends where a force is found that jumps, or
 one so stiff that the steps are far shorter than the motion needs, where the motion grows without bound (diagnosis.py),
-and where the end is out of reach. Legitimate runs of many steps go on, with word of where they are. What is decided
-depends on steps alone, never on the clock.
+and where the end is out of reach, as for steps that creep towards a time before it. Legitimate runs of many steps go
+on, with word of where they are. What is decided depends on steps alone, never on the clock.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from collections.abc import Callable
 from mbsd.base.errors import SimulationError
 from mbsd.base.running import end_if_unwanted
 from mbsd.dynamics import state as run_state
-from mbsd.dynamics.runs.diagnosis import Growth, diagnosis, growth_of, refusal, runaway
+from mbsd.dynamics.runs.diagnosis import Growth, Look, creeps_to, diagnosis, growth_of, refusal, runaway
 from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.state import ACCEPTED, REJECTED, TIME, State
 
@@ -39,6 +39,9 @@ class Pace:
         self._done = self._steps()
         self._checks, self._next = 0, 1
         self._growth: Growth | None = None
+        self._short = 0
+        """Steps since they became short."""
+        self._looks: list[Look] = []
 
     def note(self, current: Callable[[], State] | None = None, extra: int = 0) -> None:
         """After some steps: report progress, and look at the pace now and then.
@@ -63,15 +66,18 @@ class Pace:
         if self.run.method.fixed_step and not extra:
             return
         if left < MANY:
-            self._checks, self._next = 0, 1
+            self._checks, self._next, self._short, self._looks = 0, 1, 0, []
             return
         self._checks += 1
+        self._short += steps
         if self._checks < self._next:
             return
         self._next *= 2
         state = current() if current else self.state
         before, self._growth = self._growth, growth_of(self.run, state)
-        cause = runaway(self.run, state, before, self._growth) or diagnosis(self.run, state, advance, left)
+        self._looks.append(Look(self._short, advance))
+        ends = creeps_to(self._looks, at, self.end)
+        cause = runaway(self.run, state, before, self._growth) or diagnosis(self.run, state, advance, left, ends)
         if cause is not None:
             raise SimulationError(
                 f"{self.run.ready.packed.name}: {self.run.method.name} no longer advances at t = {at:.6g} s: the last "

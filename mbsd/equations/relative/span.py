@@ -42,32 +42,27 @@ from mbsd.equations.relative.equation import (
 from mbsd.equations.system import ZERO
 
 TWO_PI = 2.0 * math.pi
-SHORTEST = 1e-6
-"""Least straight piece, beside the distance of the centres: below it the row is that of a piece of this length."""
 
 
 @equation
 def residual(numbers, relative, out):
-    """Fill F (m); own numbers s_i, s_j, sigma."""
+    """Fill F (m), not a number where there is no straight piece; own numbers s_i, s_j, sigma."""
     x = relative[X]
     y = relative[Y]
     along = numbers[OWN + 1]
     h = along - numbers[OWN]
     sign = numbers[OWN + 2]
     square = x * x + y * y
-    length = math.sqrt(max(square - h * h, SHORTEST * SHORTEST * square))
     clear(out)
-    if length == 0.0:
-        out[F] = sign * along * relative[A] - numbers[PHASE] - relative[ZERO]
+    if square <= h * h:
+        out[F] = math.nan
         return
+    length = math.sqrt(square - h * h)
     psi = math.atan2(y, x)
     psi += TWO_PI * math.floor((relative[TURN] + numbers[DIRECTION] - psi) / TWO_PI + 0.5)
-    lean = math.atan2(h, length)
-    value = length - h * (psi - lean) + along * relative[A]
-    distance = math.sqrt(length * length + h * h)
-    centre = math.sqrt(square)
-    tx = (length * x + h * y) / (centre * distance)
-    ty = (length * y - h * x) / (centre * distance)
+    tx = (length * x + h * y) / square
+    ty = (length * y - h * x) / square
+    value = length - h * (psi - math.atan2(h, length)) + along * relative[A]
     out[F] = sign * value - numbers[PHASE] - relative[ZERO]
     out[FX] = sign * tx
     out[FY] = sign * ty

@@ -14,7 +14,7 @@ import numpy as np
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import EquilibriumError, LimitError, ModelError
 from mbsd.kinematics.limits.joints import coordinate, limits_of
-from mbsd.kinematics.pose.phases import take_decided, take_phases
+from mbsd.kinematics.pose.phases import refuse_impossible, take_decided, take_phases
 from mbsd.model.contacts import ANGLE_STOP, COORDINATE_STOP
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
@@ -140,6 +140,7 @@ def with_contacts(m: Model, packed: Packed, contacts: list[Joint], start: np.nda
     out.motions = packed.motions
     take_decided(out, packed)
     out.specials.callbacks += packed.specials.callbacks  # some of these numbers are their addresses
+    refuse_impossible(out, start)
     spans = [k for k in out.specials.phased if k >= len(packed.specials.names) and out.specials.names[k] == "span"]
     take_phases(out, start, np.zeros((len(out.motions) + 1, 3)), spans)
     return out

@@ -4,21 +4,51 @@ from __future__ import annotations
 
 import numpy as np
 
+from mbsd.equations.laws import Laws
 from mbsd.spatial.arrays.packing import Packed
 from mbsd.spatial.equations.evaluation import tabulate
+from mbsd.spatial.equations.tabulated_forces import tabulate_forces
 from mbsd.spatial.model.rotation import rotation_matrix
 
 
 def tabulated(
     packed: Packed, drives: np.ndarray, q: np.ndarray, v: np.ndarray, turns: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return Phi (T, m), J (T, m, 6 n) and gamma (T, m) along a motion."""
-    count, rows = len(q), len(packed.row_joint)
+    """Return Phi (T, h), J (T, h, 6 n) and gamma (T, h) of joints and drivers along a motion."""
+    held = packed.system.held
+    phi, jac, gamma = _all_rows(packed, drives, q, v, turns)
+    return phi[:, :held], jac[:, :held], gamma[:, :held]
+
+
+def force_rows(
+    packed: Packed, drives: np.ndarray, q: np.ndarray, v: np.ndarray, turns: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return measures of forces along a motion (T, f), and their rates."""
+    held = packed.system.held
+    phi, jac, _ = _all_rows(packed, drives, q, v, turns)
+    return phi[:, held:], np.einsum("trc,tc->tr", jac[:, held:], v[:, 3:])
+
+
+def _all_rows(
+    packed: Packed, drives: np.ndarray, q: np.ndarray, v: np.ndarray, turns: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    count, rows = len(q), len(packed.ws.phi)
     phi, gamma = np.zeros((2, count, rows))
     compact = np.zeros((count, rows, packed.ws.jac.shape[1]))
     whole = (np.ascontiguousarray(part) for part in (drives, q, v, turns))
     tabulate(packed.system, *whole, packed.ws, phi, compact, gamma)
     return phi, packed.spread(compact), gamma
+
+
+def forces_along(
+    packed: Packed, laws: Laws, times: np.ndarray, drives: np.ndarray, q: np.ndarray, v: np.ndarray, turns: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return loads (T, 3 + 6 n) of all forces, in the world, and multipliers (T, m) of their rows."""
+    load, lam = np.zeros_like(v), np.zeros((len(q), len(packed.ws.phi)))
+    if len(packed.forces):
+        whole = (np.ascontiguousarray(part) for part in (times, drives, q, v, turns))
+        tabulate_forces(packed.system, laws, *whole, packed.ws, load, lam)
+    return load, lam
 
 
 def load_of(packed: Packed, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:

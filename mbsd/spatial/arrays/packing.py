@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -14,10 +13,11 @@ from mbsd.model.laws import Motion
 from mbsd.spatial.arrays.tables import Tables
 from mbsd.spatial.equations.evaluation import measure
 from mbsd.spatial.equations.system import System, Workspace, workspace_for
-from mbsd.spatial.model.body import Body, Marker
+from mbsd.spatial.model.body import Body
+from mbsd.spatial.model.force import Force
 from mbsd.spatial.model.joint import Joint
 from mbsd.spatial.model.mechanism import Model
-from mbsd.spatial.model.rotation import euler_parameters, rotation_matrix
+from mbsd.spatial.model.rotation import euler_parameters
 from mbsd.spatial.model.rows import Row, along, turn
 
 
@@ -33,7 +33,7 @@ class Packed:
     motions: list[Motion]
     """Laws of the drivers."""
     row_joint: np.ndarray
-    """(m,) number of the joint or driver of each row."""
+    """(h,) number of the joint or driver of each row."""
     row_unit: list[str]
     """Unit of each residual: m or rad."""
     driver_rows: int
@@ -42,9 +42,8 @@ class Packed:
     ws: Workspace
     size: float
     """A length of the mechanism (m)."""
-    watched: list[str]
-    """Joints that turn, by whose number ``turn_angles`` gives theirs."""
-    forces: Sequence[Any] = field(default=())
+    forces: Sequence[Force] = field(default=())
+    """Forces, whose rows stand behind the h rows of joints and drivers."""
 
     @property
     def body_names(self) -> list[str]:
@@ -106,9 +105,10 @@ class Packed:
                 self.motions[k] = driver.motion.over(start, end)
 
     def measured(self, q: np.ndarray, drive: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """Return Phi (m,) and J (m, 6 n) at q (3 + 7 n,) and laws (drivers + 1, 3), zero by default."""
+        """Return Phi (h,) and J (h, 6 n) at q (3 + 7 n,) and laws (drivers + 1, 3), zero by default."""
         measure(self.system, q, np.zeros((len(self.motions) + 1, 3)) if drive is None else drive, self.ws)
-        return self.ws.phi.copy(), self.spread(self.ws.jac)
+        held = self.system.held
+        return self.ws.phi[:held].copy(), self.spread(self.ws.jac)[:held]
 
     def spread(self, compact: np.ndarray) -> np.ndarray:
         """Return J (..., m, 6 n) of a compact one (..., m, 6 k), without ground."""
@@ -142,12 +142,6 @@ def moved(q: np.ndarray, delta: np.ndarray) -> np.ndarray:
     return out
 
 
-def frames_of(body: Body, r: np.ndarray, e: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return places (T, 3) and rotations (T, 3, 3) of a body's frame from r (T, 3) and e (T, 4)."""
-    rotation = rotation_matrix(e) @ body.principal[1].T
-    return r - rotation @ np.array(body.com), rotation
-
-
 def pack(m: Model, extra: Sequence[tuple[Joint, Row]] = ()) -> Packed:
     """Return the arrays of a mechanism; rows ``extra`` of joints come last and belong to no reaction."""
     bodies = list(m.bodies.values())
@@ -158,7 +152,7 @@ def pack(m: Model, extra: Sequence[tuple[Joint, Row]] = ()) -> Packed:
     rows = [(k, row, False) for k, joint in enumerate(joints) for row in joint.rows]
     rows += [(joints.index(joint), row, True) for joint, row in extra]
     for k, row, added in rows:
-        first, held = len(row_joint), k < passive and not added
+        first, reacts = len(row_joint), k < passive and not added
         if joints[k].motion is not None:
             driven.append((first, k - passive + 1))
         sides = tables.add(row, first)
@@ -166,14 +160,23 @@ def pack(m: Model, extra: Sequence[tuple[Joint, Row]] = ()) -> Packed:
         row_joint += [k] * row.count
         units += [row.unit] * row.count
         values += [row.value] * row.count
-        wrench += [(k if held else -1, column)] * row.count
-        driver_rows += row.count * held
+        wrench += [(k if reacts else -1, column)] * row.count
+        driver_rows += row.count * reacts
+    held, forces = len(row_joint), [] if extra else list(m.forces.values())
+    pushes = [push for force in forces for push in force.pushes]
+    for k, push in enumerate(pushes):
+        tables.add(push.row, held + k)
+    values += [0.0] * len(pushes)
+    wrench += [(-1, 0)] * len(pushes)
     arms = [tables.place(joint.j) for joint in joints[:passive]]
     system = System(
         mass=np.array([body.mass for body in bodies]),
         inertia=np.array([body.principal[0] for body in bodies]),
         gravity=np.array(m.gravity, float),
-        **tables.arrays(len(row_joint)),
+        **tables.arrays(held + len(pushes)),
+        held=held,
+        force=np.array(_laws_of(forces, held, len(m.drivers)), np.int64).reshape(-1, 2),
+        push=np.array([(p.stiffness, p.free, p.damping, p.amount) for p in pushes], float).reshape(-1, 4),
         value=np.array(values, float),
         driven=np.array(driven, np.int64).reshape(-1, 2),
         wrench=np.array(wrench, np.int64).reshape(-1, 2),
@@ -183,8 +186,18 @@ def pack(m: Model, extra: Sequence[tuple[Joint, Row]] = ()) -> Packed:
     return Packed(
         name=m.name, bodies=bodies, joints=joints, motions=motions, row_joint=np.array(row_joint, np.int64),
         row_unit=units, driver_rows=driver_rows, system=system, ws=workspace_for(system), size=size_of(m),
-        watched=[joint.name for joint in m.joints.values() if joint.kind.turns],
+        forces=forces,
     )  # fmt: skip
+
+
+def _laws_of(forces: Sequence[Force], first: int, drivers: int) -> list[tuple[int, int]]:
+    """Return row, from ``first`` on, and law of each row of forces; laws of drivers come before."""
+    table, law = [], drivers
+    for force in forces:
+        numbers = {name: law + k for k, name in enumerate(force.laws, 1)}
+        law += len(force.laws)
+        table += [(first + len(table) + k, numbers.get(push.law, 0)) for k, push in enumerate(force.pushes)]
+    return table
 
 
 def size_of(m: Model) -> float:
@@ -205,9 +218,3 @@ def size_of(m: Model) -> float:
 def start_row(joint: Joint) -> Row:
     """Return the row that measures the turn or the slide of a joint."""
     return turn(joint.i, joint.j) if joint.kind.turns else along(joint.i, "z", joint.j)
-
-
-def marker_motion(marker: Marker) -> tuple[np.ndarray, np.ndarray]:
-    """Return the place (3,) of a marker from the centre of mass, and its axes (3, 3), in principal axes."""
-    own = marker.body.principal[1].T
-    return own @ (np.array(marker.place) - np.array(marker.body.com)), own @ marker.axes

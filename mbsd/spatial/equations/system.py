@@ -54,6 +54,12 @@ class System(NamedTuple):
     """(., 2) row and law."""
     row_body: Any
     """(m, k) bodies of each row; -1: none."""
+    held: int
+    """Rows of joints and drivers; those of forces stand behind them."""
+    force: Any
+    """(f, 2) row and law of each force; law 0: none."""
+    push: Any
+    """(f, 4) its stiffness, free value, damping and constant amount."""
     wrench: Any
     """(m, 2) joint of each row of joints, and column of its second body; -1: a driver's."""
     joint_arm: Any
@@ -95,6 +101,8 @@ class Workspace(NamedTuple):
     """(3 + 7 n,) trial coordinates."""
     delta: Any
     """(2, 3 + 6 n) changes or velocities."""
+    law: Any
+    """(3,) value of a law with two derivatives."""
     load: Any
     """(3 + 6 n,) force and torque in the world that are left for multipliers."""
 
@@ -122,5 +130,6 @@ def workspace_for(system: System) -> Workspace:
         right=np.zeros((2, rows)),
         pose=np.zeros(7 * bodies - 4),
         delta=np.zeros((2, 6 * bodies - 3)),
+        law=np.zeros(3),
         load=np.zeros(6 * bodies - 3),
     )

@@ -40,6 +40,7 @@ from mbsd.spatial.equations.evaluation import (
     find_loads,
     find_wrenches,
 )
+from mbsd.spatial.equations.forces import apply_forces
 
 NARROW = 4
 """Status of a step at which rows of redundant joints come near to depend on each other."""
@@ -183,15 +184,17 @@ def _predict(motion, k, pose):
 
 
 @internal
-def _balance(system, seq, fac, ws, motion, k):
+def _balance(system, laws, seq, fac, ws, motion, k):
     """Fill multipliers and wrenches of step k."""
     find_loads(system, motion.v[k], motion.a[k], ws, ws.load)
+    if system.force.shape[0] > 0:
+        apply_forces(system, laws, motion.times[k], motion.v[k], ws, ws.load, motion.lam[k])
     solve_transposed(seq, fac, ws.load, motion.lam[k])
     find_wrenches(system, ws, motion.lam[k], motion.wrench[k])
 
 
 @kernel
-def sweep(system, seq, fac, ws, size, motion, start, chosen, part):
+def sweep(system, laws, seq, fac, ws, size, motion, start, chosen, part):
     """Solve all of ``motion`` from row ``start`` on; rows before are known.
 
     The rows of J in ``seq`` are those chosen for times from row ``chosen`` on. With ``start`` 0, q[0] and turn[0] must
@@ -255,7 +258,7 @@ def sweep(system, seq, fac, ws, size, motion, start, chosen, part):
         for d in range(motion.determinant.shape[1]):
             motion.determinant[k, d] = fac.determinant[d]
         worst = 0.0
-        for r in range(ws.phi.shape[0]):
+        for r in range(system.held):
             worst = max(worst, abs(ws.phi[r]))
         motion.residual[k] = worst
         for c in range(3, delta.shape[1]):
@@ -277,5 +280,5 @@ def sweep(system, seq, fac, ws, size, motion, start, chosen, part):
         if k > 0 and _unexplained(q, motion.dq, motion.ddq, k, h, per_metre) > UNEXPLAINED:
             return BRANCH_DOUBT, k
         if motion.lam.shape[0] > 0:
-            _balance(system, seq, fac, ws, motion, k)
+            _balance(system, laws, seq, fac, ws, motion, k)
     return DONE, times.shape[0]

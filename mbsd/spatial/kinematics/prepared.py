@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.arrays.laws import refuse_bad_laws
+from mbsd.arrays.laws import compiled_laws, pack_laws, refuse_bad_laws
 from mbsd.base.errors import ModelError
+from mbsd.equations.laws import Laws
 from mbsd.kinematics.elimination import Elimination, Factors, plan
 from mbsd.results.views import Mobility
 from mbsd.spatial.arrays.packing import Packed, pack
@@ -29,6 +30,8 @@ class Prepared:
     sequence: Elimination
     factors: Factors
     mobility: Mobility
+    laws: Laws
+    """Laws of drivers and forces; empty where no force has one."""
 
 
 def prepare(m: Model, start: float = 0.0, end: float = 1.0) -> Prepared:
@@ -40,7 +43,8 @@ def prepare(m: Model, start: float = 0.0, end: float = 1.0) -> Prepared:
     q0, turns = assemble(m, packed, start)
     mobility = joint_mobility(packed, q0)
     kept = choose_rows(packed, q0, start, mobility)
-    return Prepared(packed, q0, turns, *planned(packed, kept), mobility)
+    laws = compiled_laws(same_fields, start, end) if any(force.laws for force in packed.forces) else pack_laws(())
+    return Prepared(packed, q0, turns, *planned(packed, kept), mobility, laws)
 
 
 def packed_checked(m: Model) -> Packed:

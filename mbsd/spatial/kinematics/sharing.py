@@ -9,25 +9,26 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbsd.spatial.arrays.along import load_of, tabulated
+from mbsd.equations.laws import Laws
+from mbsd.spatial.arrays.along import forces_along, load_of, tabulated
 from mbsd.spatial.arrays.packing import Packed
+from mbsd.spatial.kinematics.newton import DrivenMotion
 
 JACOBIAN_NUMBERS = 2_000_000
 """Numbers of Jacobians held at once."""
 
 
-def least_norm(
-    packed: Packed, drives: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray, turns: np.ndarray
-) -> np.ndarray:
-    """Return multipliers (T, m) of least norm along a motion q (T, 3 + 7 n), v, a (T, 3 + 6 n)."""
+def least_norm(packed: Packed, laws: Laws, motion: DrivenMotion) -> np.ndarray:
+    """Return multipliers (T, m) of least norm along a motion."""
+    times, drives, q, v, a, turns = motion.times, motion.drives, motion.q, motion.v, motion.a, motion.turn
     count, rows = len(q), len(packed.row_joint)
-    lam = np.zeros((count, rows))
-    loads = load_of(packed, q, v, a)
+    loads, lam = forces_along(packed, laws, times, drives, q, v, turns)
+    loads += load_of(packed, q, v, a)
     each = max(1, JACOBIAN_NUMBERS // (rows * packed.freedoms))
     for first in range(0, count, each):
         part = slice(first, first + each)
         _, jac, _ = tabulated(packed, drives[part], q[part], v[part], turns[part])
         orthogonal, upper = np.linalg.qr(jac * packed.row_scale[:, None])
         side = np.linalg.solve(np.swapaxes(upper, 1, 2), loads[part, 3:, None])
-        lam[part] = (orthogonal @ side)[..., 0] * packed.row_scale
+        lam[part, :rows] = (orthogonal @ side)[..., 0] * packed.row_scale
     return lam

@@ -40,19 +40,19 @@ def sweep(m: Model, duration: float | None, steps: int, times: Sequence[float] |
     taken = Steps(same_fields, grid)
     motion = _march(ready, taken)
     if ready.mobility.redundant_rows:
-        lam = least_norm(ready.packed, motion.drives, motion.q, motion.v, motion.a, motion.turn)
+        lam = least_norm(ready.packed, ready.laws, motion)
         wrench = np.zeros((len(motion.times), len(m.joints), 6))
         wrenches_along(ready.packed.system, motion.drives, motion.q, ready.packed.ws, lam, wrench)
         motion = motion._replace(lam=lam, wrench=wrench)
     return Solution(
-        m, ready.packed, motion, taken.wanted, ready.mobility, dict(m.starts), inserted_steps=taken.inserted
+        m, ready.packed, motion, taken.wanted, ready.mobility, ready.laws, dict(m.starts), inserted_steps=taken.inserted
     )
 
 
 def _room(ready: Prepared, steps: Steps) -> newton.DrivenMotion:
     """Return arrays for a motion at all steps, with the start in their first rows."""
     packed, count = ready.packed, len(steps.times)
-    velocities, rows = packed.freedoms + 3, len(packed.row_joint)
+    velocities, rows = packed.freedoms + 3, len(packed.ws.phi)
     q, dq, ddq = (np.zeros((count, len(ready.q0))) for _ in range(3))
     q[0] = ready.q0
     turn = np.zeros((count, len(ready.turns)))
@@ -74,8 +74,9 @@ def _march(ready: Prepared, steps: Steps) -> newton.DrivenMotion:
     first, chosen, part = 0, 0, NEARER if ready.mobility.redundant_rows else 0.0
     while True:
         status, index = newton.sweep(
-            packed.system, ready.sequence, ready.factors, packed.ws, packed.size, motion, first, chosen, part
-        )
+            packed.system, ready.laws, ready.sequence, ready.factors, packed.ws, packed.size, motion, first, chosen,
+            part,
+        )  # fmt: skip
         if status == DONE:
             break
         if index == 0:

@@ -3,6 +3,11 @@
 from __future__ import annotations
 
 from mbsd.spatial.model.drivers import drive_distance, drive_slide, drive_turn
+from mbsd.spatial.model.forces.actuator import actuator
+from mbsd.spatial.model.forces.drag import drag
+from mbsd.spatial.model.forces.spring import spring
+from mbsd.spatial.model.forces.torque import torque
+from mbsd.spatial.model.forces.torsion_spring import torsion_spring
 from mbsd.spatial.model.joints.belt import belt
 from mbsd.spatial.model.joints.constant_velocity import constant_velocity
 from mbsd.spatial.model.joints.cylindrical import cylindrical
@@ -47,6 +52,12 @@ class Building(Model):
     rack_and_pinion = rack_and_pinion
     belt = belt
     differential = differential
+
+    spring = spring
+    torsion_spring = torsion_spring
+    torque = torque
+    actuator = actuator
+    drag = drag
 
     drive_turn = drive_turn
     drive_slide = drive_slide

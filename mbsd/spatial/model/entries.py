@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
+from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such, shown
 from mbsd.model.laws import Motion
 from mbsd.model.laws.function import Function
 from mbsd.spatial.model.body import Direction, Fixing, Marker, Place, refuse_parallel
+from mbsd.spatial.model.force import Force, ForceKind
 from mbsd.spatial.model.joint import Joint, JointKind
 from mbsd.spatial.model.mechanism import Model, own_body
 from mbsd.spatial.model.rotation import frame
@@ -123,3 +125,29 @@ def refuse_same(what: str, i: Marker, j: Marker) -> None:
     """Raise ModelError where both markers are on one body."""
     if i.body is j.body:
         raise ModelError(f"{what} connects '{i.body.name}' with itself; give two bodies")
+
+
+def add_force(
+    m: Model, kind: ForceKind, name: str, i: Marker, j: Marker, params: Mapping[str, Any],
+    laws: Mapping[str, Motion] | None = None, joint: Joint | None = None,
+) -> Force:  # fmt: skip
+    """Enter a force. Raises ModelError."""
+    m.refuse_name(name, "force")
+    force = m.forces[name] = Force(kind, name, i, j, params, laws or {}, joint)
+    return force
+
+
+def amount_given(what: str, amount: float | Law) -> tuple[dict[str, float], dict[str, Motion]]:
+    """Return a number as a param, or a law of time: (params, laws). Raises ModelError."""
+    if isinstance(amount, Motion):
+        return {}, {"amount": amount}
+    if callable(amount):
+        return {}, {"amount": Function(amount)}
+    return {"amount": finite_number(f"{what}: amount", amount)}, {}
+
+
+def not_negative(what: str, **values: float) -> None:
+    """Raise ModelError for a negative number among ``values``."""
+    for name, value in values.items():
+        if value < 0.0:
+            raise ModelError(f"{what}: {name} is {value:g}; it cannot be negative")

@@ -26,6 +26,7 @@ from mbsd.spatial.model.body import (
     orientation_given,
     place_given,
 )
+from mbsd.spatial.model.force import Force
 from mbsd.spatial.model.joint import Joint
 from mbsd.spatial.model.solids import along_x, ball, cylinder, cylinder_mass
 
@@ -42,11 +43,13 @@ class Model(Suggesting):
     bodies: dict[str, Body] = field(default_factory=lambda: Named("body"))
     joints: dict[str, Joint] = field(default_factory=lambda: Named("joint"))
     drivers: dict[str, Joint] = field(default_factory=lambda: Named("driver"))
-    forces: dict[str, Any] = field(default_factory=lambda: Named("force"))
+    forces: dict[str, Force] = field(default_factory=lambda: Named("force"))
     contacts: dict[str, Any] = field(default_factory=lambda: Named("contact"))
     traces: dict[str, Marker] = field(default_factory=lambda: Named("traced point"))
     starts: dict[str, float] = field(default_factory=dict)
     """Turns (rad) and slides (m) of joints at the start, by name."""
+    velocities: dict[str, tuple[float, ...]] = field(default_factory=dict)
+    """Rates of joints (rad/s or m/s) and angular velocities of bodies (rad/s, in the world) at the start, by name."""
 
     other_words = MappingProxyType(
         {"hinge": "revolute", "pin": "revolute", "slider": "prismatic", "ball_joint": "spherical", "weld": "fixed"}
@@ -156,6 +159,24 @@ class Model(Suggesting):
                 raise ModelError(f"{what}: a {kind.name} joint has neither turn nor slide; name one that has")
             number = finite_number(what, value)
             self.starts[name] = math.radians(number) if kind.turns else number
+
+    def start_moving(self, values: Mapping[str, float | Sequence[float] | np.ndarray] | None = None) -> None:
+        """Start a simulation with joints at a rate (rad/s or m/s), or bodies at an angular velocity.
+
+        A body takes three numbers (wx, wy, wz) in the world (rad/s). All else moves as joints and drivers make it, with
+        little kinetic energy. What they forbid is changed, and the simulation warns.
+        """
+        for name, value in (values or {}).items():
+            what = f"{self.name}: start velocity of '{name}'"
+            if name in self.joints:
+                kind = self.joints[name].kind
+                if not (kind.turns or kind.slides):
+                    raise ModelError(f"{what}: a {kind.name} joint has neither turn nor slide; name one that has")
+                self.velocities[name] = (finite_number(what, value),)
+            elif name in self.bodies:
+                self.velocities[name] = place_given(what, value)
+            else:
+                raise ModelError(f"{self.name}: {no_such('joint or body', name, [*self.joints, *self.bodies])}")
 
     def refuse_name(self, name: object, what: str, *taken: Mapping[str, object]) -> None:
         """Raise ModelError for a name that is none, or is used already."""

@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.spatial.arrays.along import load_of, tabulated
+from mbsd.equations.laws import Laws
+from mbsd.spatial.arrays.along import forces_along, load_of, tabulated
 from mbsd.spatial.arrays.packing import Packed
 
 
-def residuals(packed: Packed, motion: Any) -> tuple[float, float, float, float]:
+def residuals(packed: Packed, laws: Laws, motion: Any) -> tuple[float, float, float, float]:
     """Return the largest |Phi|, |J v - nu|, |J a - gamma| and missing power of a motion (SI)."""
     phi, jac, gamma = tabulated(packed, motion.drives, motion.q, motion.v, motion.turn)
     nu = np.zeros(phi.shape)
@@ -18,8 +19,9 @@ def residuals(packed: Packed, motion: Any) -> tuple[float, float, float, float]:
         nu[:, row] = motion.drives[:, law, 1]
     speed = np.einsum("trc,tc->tr", jac, motion.v[:, 3:]) - nu
     bend = np.einsum("trc,tc->tr", jac, motion.a[:, 3:]) - gamma
-    loads = load_of(packed, motion.q, motion.v, motion.a)
-    power = (loads * motion.v).sum(axis=1) - (motion.lam * nu).sum(axis=1)
+    loads, _ = forces_along(packed, laws, motion.times, motion.drives, motion.q, motion.v, motion.turn)
+    loads += load_of(packed, motion.q, motion.v, motion.a)
+    power = (loads * motion.v).sum(axis=1) - (motion.lam[:, : nu.shape[1]] * nu).sum(axis=1)
     return (
         float(np.abs(phi).max(initial=0.0)),
         float(np.abs(speed).max(initial=0.0)),

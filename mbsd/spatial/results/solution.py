@@ -5,6 +5,7 @@ sol.body("rod").place                (T, 3) of the body's frame; orientation (w,
 sol.joint("bearing").force           (T, 3) on the joint's second body, in the world; moment, local_force, along
 sol.joint("bearing").turn            also turn_rate, slide, slide_rate
 sol.driver("motor").torque           also effort, force, value, rate, power
+sol.force("spring").effort           (T,) and value, rate, power; of several rows (T, rows)
 sol.point("P").place                 of traced points
 sol.energy.kinetic, .potential
 """
@@ -25,6 +26,7 @@ from mbsd.base.quantity import counted
 from mbsd.results.views import DriverView, EnergyView, Mobility, Stats
 from mbsd.spatial.model.body import Marker
 from mbsd.spatial.model.joint import Joint
+from mbsd.spatial.results.forces import ForceView, force_view
 from mbsd.spatial.results.frames import (
     BodyMotion,
     body_motion,
@@ -55,10 +57,18 @@ class Solution(Suggesting):
     """mbsd.spatial.kinematics.newton.DrivenMotion"""
     wanted: np.ndarray = field(repr=False)
     mobility: Mobility
+    laws: Any = field(repr=False)
+    """Laws of drivers and forces, as kernels read them."""
     starts: Mapping[str, float] = field(repr=False)
     """Turns (rad) and slides (m) that start_near gave."""
     inserted_steps: int = 0
     """Steps added between outputs to stay on the branch."""
+    steps: int = 0
+    """Steps of a simulation."""
+    work: np.ndarray | None = field(default=None, repr=False)
+    """(T,) of drivers since the start (J), of a simulation."""
+    changes: tuple[str, ...] = ()
+    """Changes of the given start that made a simulation consistent."""
 
     @cached_property
     def t(self) -> np.ndarray:
@@ -128,9 +138,14 @@ class Solution(Suggesting):
         effort = -self.lam[:, self.packed.driver_rows + k]
         return DriverView(name, driver.kind.angular, value, rate, acceleration, effort)
 
+    def force(self, name: str) -> ForceView:
+        """Return what a force measures, its effort and power."""
+        k = self._index(name, [force.name for force in self.packed.forces], "force")
+        return force_view(self.packed, k, self.motion, self.wanted)
+
     @cached_property
     def energy(self) -> EnergyView:
-        """Kinetic and potential energy of all bodies; weight counts from the origin."""
+        """Kinetic and potential energy, springs included; weight counts from the origin."""
         system, count = self.packed.system, len(self.t)
         rates, poses = self.v[:, 3:].reshape(count, -1, 6), self.q[:, 3:].reshape(count, -1, 7)
         kinetic = 0.5 * (system.mass[1:] * (rates[..., :3] ** 2).sum(axis=2)).sum(axis=1)
@@ -139,12 +154,17 @@ class Solution(Suggesting):
             spin = self.body(body.name).w_body @ body.principal[1]
             kinetic = kinetic + 0.5 * (system.inertia[b] * spin**2).sum(axis=1)
         potential = -(system.mass[1:] * (poses[..., :3] @ system.gravity)).sum(axis=1)
+        for k, force in enumerate(self.packed.forces):
+            values = force_view(self.packed, k, self.motion, self.wanted).values
+            for push, x in zip(force.pushes, values.T, strict=True):
+                potential = potential + 0.5 * push.stiffness * (x - push.free) ** 2
         return EnergyView(kinetic, potential)
 
     @cached_property
     def stats(self) -> Stats:
         """How well the motion fulfils its equations: largest residuals over all steps and rows."""
-        return Stats(*residuals(self.packed, self.motion), len(self.motion.times), self.inserted_steps)
+        steps = self.steps or len(self.motion.times)
+        return Stats(*residuals(self.packed, self.laws, self.motion), steps, self.inserted_steps)
 
     def _begin(self, joint: Joint) -> float:
         """Return the turn (rad) near which a joint starts, as a driver or start_near has it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -13,6 +14,8 @@ from render.film.pieces import Lift
 # Time ramps: how time of the motion passes while the film runs, and how fast at each moment.
 
 Array = NDArray[np.float64]
+SHOWN = 1.0
+"""Seconds that a rate holds at least if it is written."""
 Segment = tuple[float, float, float]
 """Seconds of film, and the rates (seconds of the motion in a second of film) at its begin and its end."""
 
@@ -55,6 +58,15 @@ class Ramp:
             s -= seconds
         return self.segments[-1][2] if self.segments else 0.0
 
+    def shown_rate(self, s: float) -> float | None:
+        """Return the rate that is written at film second ``s``; None while it changes, or holds for less than SHOWN."""
+        begins = 0.0
+        for seconds, low, high in self.segments:
+            if s < begins + seconds:
+                return low if low == high and seconds >= SHOWN else None
+            begins += seconds
+        return None
+
 
 def into(event: float, earliest: float, rate: float, seconds: float, slowing: float) -> Ramp:
     """Return a ramp at ``rate`` for some ``seconds`` that slows down and stops at an ``event``.
@@ -91,6 +103,17 @@ class Warp:
         h = 0.02 * self.seconds
         low, high = max(s - h, 0.0), min(s + h, self.seconds)
         return (self.time_at(high) - self.time_at(low)) / max(high - low, 1e-12)
+
+    def shown_rate(self, s: float) -> float | None:
+        """Return the rate that is written at film second ``s``, in steps: it changes all the time."""
+        return stepped(self.rate(s))
+
+
+def stepped(rate: float) -> float:
+    """Return the nearest of 1, 2, 5, 10, 20 and so on times real time, or of these parts of it."""
+    power = math.floor(math.log10(rate)) if rate > 0 else 0
+    steps = [step * 10.0**power for step in (1, 2, 5, 10)]
+    return min(steps, key=lambda step: abs(math.log(step / rate))) if rate > 0 else 0.0
 
 
 LEAST, SOFT = 0.35, 0.04

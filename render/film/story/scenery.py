@@ -311,7 +311,8 @@ class Scenery:
         each = self.step / self.fps
         return each * max(1, round(seconds / each))
 
-    def going(self, time: float, rate: float, strip: bool = True, **more: object) -> Over:
-        """Return the overlay of a moving picture: the rate of time, and the strip with its playhead."""
-        over = Over(rate=rate_words(rate, self.say), strip=1.0 if strip and self.curves else 0.0, now=time)
+    def going(self, time: float, rate: float | None, strip: bool = True, **more: object) -> Over:
+        """Return the overlay of a moving picture: the rate of time if it is written, the strip with its playhead."""
+        words = "" if rate is None else rate_words(rate, self.say)
+        over = Over(rate=words, strip=1.0 if strip and self.curves else 0.0, now=time)
         return msgspec.structs.replace(over, **more)

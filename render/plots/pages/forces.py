@@ -19,7 +19,7 @@ from render.magnitudes import (
 )
 from render.plots.measures import dress_plane, horizon
 from render.plots.pages.motion import draw
-from render.plots.style import INK, PALETTE, SIZE, acting_on, ink_of, page, rows
+from render.plots.style import INK, PALETTE, SIZE, acting_on, ink_of, page, rows, told
 from shared.contract import Motion
 from shared.contract.quantity import written
 
@@ -60,6 +60,7 @@ def reactions(motion: Motion) -> Figure:
         motion.mechanism,
         "what the joints carry",
         "magnitude of each joint's reaction, and what the driver must give",
+        told(motion, "peak_cause", "peak_weight", "ripple"),
     )
     for axes, (words, unit, lines) in zip(rows(figure, len(panels)), panels, strict=True):
         draw(axes, over, words, unit, lines, floor=slack if unit == "N m" else weak)
@@ -93,6 +94,7 @@ def forces(motion: Motion) -> Figure:
         motion.mechanism,
         "what the forces do",
         "positive where it makes its length, angle or gap grow; power: what it gives to the motion",
+        told(motion, "work_share", "isolation", "impact", "gas", "losses"),
     )
     for axes, (words, unit, lines, floor) in zip(rows(figure, len(panels)), panels, strict=True):
         draw(axes, over, words, unit, lines, floor=floor)
@@ -179,7 +181,12 @@ def frame(motion: Motion) -> Figure:
     assert vibration is not None
     assert shaken.mx is not None
     assert shaken.my is not None
-    figure = page(motion.mechanism, "what the frame feels", f"inertia alone; moment about {shaken.about} in the report")
+    figure = page(
+        motion.mechanism,
+        "what the frame feels",
+        f"inertia alone; moment about {shaken.about} in the report",
+        told(motion, "balance", "couple"),
+    )
     force, couple, centre = rows(figure, 3)
     draw(
         force,

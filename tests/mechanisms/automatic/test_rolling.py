@@ -15,10 +15,10 @@ from mbsd.model.plane_curves import curve_pieces
 from mbsd.results.solution import Solution
 from mechanisms.automatic import automatic
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.layout.curves import curve_path
+from mechanisms.stages.automatic.layout.curves import curve_path, turns_left
 from mechanisms.stages.automatic.rolling.roads import Road, along, with_shared_roads
 from mechanisms.stages.automatic.rolling.rounds import Round
-from mechanisms.stages.automatic.rolling.tracks import Track, circle, turns_left
+from mechanisms.stages.automatic.rolling.tracks import Track, circle
 from mechanisms.stages.automatic.rolling.tracks import closed_normals as normals
 from shared.shapes.outline import distances
 from shared.stage.errors import UserError

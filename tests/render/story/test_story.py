@@ -10,12 +10,13 @@ import pytest
 from render.film.film import Film
 from render.film.framing import project
 from render.film.story.planned import planned, scenery_of
-from render.film.story.ramps import Ramp, into, warped
-from render.film.story.shots import reason
+from render.film.story.ramps import Ramp, into, stepped, warped
+from render.film.story.shots import close_ups, reason
 from render.film.story.story import Story, curves_of
 from render.frames.story import kinds
 from render.frames.story.telling import Telling, telling_of
 from render.insights import Insight
+from render.insights.meeting import happening
 from render.insights.seen import insight
 from render.insights.stops import stops
 from render.presets import PRESETS, preset_named
@@ -84,6 +85,19 @@ def test_time_stops_at_the_dead_point_and_says_so(out_root) -> None:
     at = (story.model_time(middle) - rocker_time(telling)) % period_of(telling)
     omega = np.interp(at + rocker_time(telling), telling.film.motion.time, rocker.omega)
     assert abs(omega) < 1e-3 * np.abs(rocker.omega).max()
+
+
+def test_the_close_up_has_its_event_after_three_fifths_of_its_move(out_root) -> None:
+    telling = tell()
+    placed = next(placed for placed in telling.story.placed if placed.shot.name == "macro")
+    motion = telling.film.motion
+    events = [motion.time[int(happening(motion, name).argmax())] for name in motion.joints]
+    seconds = np.linspace(0.0, placed.shot.seconds, 20001)
+    times = np.array([placed.shot.model(float(s)) for s in seconds])
+    move = seconds[int(np.argmax(times >= times[-1] - 1e-12))]
+    shown = placed.shot.model(close_ups.EVENT * float(move))
+    off = [abs((shown - at + period_of(telling) / 2) % period_of(telling) - period_of(telling) / 2) for at in events]
+    assert min(off) < 1e-4
 
 
 def test_sound_follows_the_times_of_the_story(out_root) -> None:
@@ -308,6 +322,15 @@ def test_the_rate_is_the_slope_of_the_time() -> None:
     for s in np.linspace(0.05, 5.45, 61):
         if min(abs(s - edge) for edge in (1.0, 3.0, 4.5)) > 1e-3:
             assert slope(ramp.time_at, float(s)) == pytest.approx(ramp.rate(float(s)), abs=1e-6)
+
+
+def test_a_rate_is_written_where_it_holds_for_a_second_and_in_steps_where_it_never_does() -> None:
+    ramp = Ramp(2.0, ((1.5, 0.5, 0.5), (2.0, 0.5, 0.0), (1.5, 0.0, 0.0), (0.9, 3.0, 3.0)))
+    assert [ramp.shown_rate(s) for s in (0.2, 1.4, 1.6, 3.4, 3.6, 4.9, 5.2)] == [0.5, 0.5, None, None, 0.0, 0.0, None]
+    rates = np.geomspace(1e-4, 1e4, 400)
+    written = [stepped(float(rate)) for rate in rates]
+    assert {f"{rate:e}"[0] for rate in written} == {"1", "2", "5"}
+    assert np.abs(np.log(np.divide(written, rates))).max() < np.log(2.5) / 2 + 1e-9
 
 
 @pytest.mark.parametrize("event", [0.0, 0.1, 0.7, 30.0])

@@ -127,8 +127,8 @@ def _cable(m: Mechanism, spans: list[Joint], layout: Layout) -> Cable:
             f"{m.name}: cable '{spans[0].name}' has no wheel; write m.rope or m.distance between two points, or "
             f"{shown_file(m.name, 'parts')}"
         )
-    for one, other in pairwise(pulleys):
-        one.mates.append(other)
-        other.mates.append(one)
+    for before, after in pairwise(pulleys):
+        before.mates.append(after)
+        after.mates.append(before)
     ends = [marker for marker, radius in (stations[0], stations[-1]) if radius == 0.0]
     return Cable(tuple(spans), tuple(pulleys), tuple(ends))

@@ -15,7 +15,7 @@ from render.film.story.frame import Caption, Over, Picture, Shot, shown_in
 from render.film.story.ramps import Ramp, eased
 from render.film.story.scenery import Scenery, Stand, between, focused, raised
 from render.film.story.words import plain
-from render.insights.stops import carried
+from render.insights.meeting import happening, meets, place_of
 from shared.contract.shot import Section
 from shared.stage.errors import UserError
 
@@ -27,6 +27,8 @@ LENS, WIDE = 90.0, 0.36
 """mm, and the width of what is seen, in sizes of the machine."""
 SLOWER = 0.4
 """The rate beside that of the loop."""
+EVENT = 0.6
+"""Part of the move after which most happens."""
 FOLLOWED = 0.85
 """Part of the joint's way that the camera goes."""
 LYING, STANDING = ((-34.0, 34.0), (14.0, 44.0)), ((-40.0, 16.0), (6.0, 26.0))
@@ -34,20 +36,23 @@ LYING, STANDING = ((-34.0, 34.0), (14.0, 44.0)), ((-40.0, 16.0), (6.0, 26.0))
 
 
 def macro(scenery: Scenery) -> Shot | None:
-    """Return the macro; None for a machine without joints."""
+    """Return the macro, in which most happens after EVENT of its move; None for a machine without joints."""
     name = _joint(scenery)
     if name is None:
         return None
     clock, move = scenery.film.clock, scenery.moving(MOVES)
     rate = SLOWER * clock.rate
-    begin = clock.start if clock.repeats else max(clock.start, _busy(scenery) - rate * move / 2)
-    ramp = Ramp(begin, ((move * 0.75, rate, rate), (move * 0.25, rate, 0.0)))
+    event = float(scenery.film.motion.time[int(happening(scenery.film.motion, name).argmax())])
+    begin = event - rate * EVENT * move
+    ramp = Ramp(
+        begin if clock.repeats else max(clock.start, begin), ((move * 0.75, rate, rate), (move * 0.25, rate, 0.0))
+    )
     stands = _stands(scenery)
 
     def picture(s: float) -> Picture:
         time = ramp.time_at(min(s, move))
         at = scenery.loop_frame(time)
-        a, b = (_aimed(scenery, stand, _place(scenery, name, at)) for stand in stands)
+        a, b = (_aimed(scenery, stand, _place(scenery, name, at, event)) for stand in stands)
         camera = focused(between(a, b, eased(s / move)), scenery.up, scenery.blur)
         return Picture(at=at, camera=camera, hidden="trails")
 
@@ -55,9 +60,7 @@ def macro(scenery: Scenery) -> Shot | None:
 
     def over(s: float) -> Over:
         shown = shown_in(s, 0.5, SECONDS - 0.2)
-        return scenery.going(
-            ramp.time_at(s), ramp.rate(s) if s < move else 0.0, strip=False, caption=text, caption_shown=shown
-        )
+        return scenery.going(ramp.time_at(s), ramp.shown_rate(s), strip=False, caption=text, caption_shown=shown)
 
     captions = (Caption(0.5, SECONDS - 0.2, text),)
     return Shot("macro", scenery.say("macro"), SECONDS, picture, over, ramp.time_at, captions)
@@ -69,22 +72,24 @@ def _busy(scenery: Scenery) -> float:
 
 
 def _joint(scenery: Scenery) -> str | None:
-    """Return the joint that is asked for; else of those on top the one of the event, or that carries most."""
+    """Return the joint that is asked for; else where most happens: where bodies meet before pins, above before below.
+
+    A pin that stands comes last.
+    """
     joints = scenery.film.motion.joints
     if scenery.wishes.joint is not None:
         return scenery.wishes.joint
     if not joints:
         return None
     tops = {name: _height(scenery, name) for name in joints}
-    first = carried(scenery.film.motion, scenery.reasons[0].start)[0] if scenery.reasons else ""
     highest = max(tops.values())
     stack = highest - min(tops.values())
 
-    def worth(name: str) -> tuple[bool, bool, bool, bool, float]:
+    def worth(name: str) -> tuple[bool, bool, bool, float]:
         joint = joints[name]
         on_top = tops[name] >= highest - 0.35 * stack - 1e-9
-        moves = float(max(np.ptp(joint.x), np.ptp(joint.y))) > 0.02 * scenery.across
-        return joint.pair == "pin", on_top, moves, name == first, float(np.hypot(joint.fx, joint.fy).max())
+        moves = meets(joint) or float(max(np.ptp(joint.x), np.ptp(joint.y))) > 0.02 * scenery.across
+        return meets(joint), moves, on_top, float(happening(scenery.film.motion, name).max())
 
     return max(joints, key=worth)
 
@@ -100,11 +105,17 @@ def _height(scenery: Scenery, name: str) -> float:
     return max(heights, default=scenery.top)
 
 
-def _place(scenery: Scenery, name: str, at: float) -> tuple[float, float, float]:
-    """Return where the joint is (m, world) at a frame, for a camera that does not follow all of its way."""
+def _place(scenery: Scenery, name: str, at: float, event: float) -> tuple[float, float, float]:
+    """Return where the joint is (m, world) at a frame, for a camera that does not follow all of its way.
+
+    Where bodies meet it waits for the ``event`` (s).
+    """
     moment = scenery.film.clock.moment(at)
-    x, y = scenery.film.poses.joint(name, Moment(moment.time, 0))
     joint = scenery.film.motion.joints[name]
+    if meets(joint) and joint.acts is not None and not scenery.film.way(at).any():
+        x, y = (float(np.interp(event, scenery.film.motion.time, part)) for part in place_of(joint))
+        return x, y, _height(scenery, name)
+    x, y = scenery.film.poses.joint(name, Moment(moment.time, 0))
     middle = np.array([np.mean(joint.x), np.mean(joint.y)])
     away = scenery.film.way(at).any()
     part = 1.0 if away else FOLLOWED
@@ -173,7 +184,7 @@ def section(scenery: Scenery) -> Shot | None:
     text = scenery.say("cut_open")
 
     def over(s: float) -> Over:
-        rate, shown = ramp.rate(s) if s < move else 0.0, shown_in(s, 0.4, SECTION_SECONDS - 0.2)
+        rate, shown = ramp.shown_rate(s), shown_in(s, 0.4, SECTION_SECONDS - 0.2)
         return scenery.going(ramp.time_at(s), rate, strip=False, caption=text, caption_shown=shown)
 
     captions = (Caption(0.4, SECTION_SECONDS - 0.2, text),)

@@ -79,7 +79,7 @@ def _shot(scenery: Scenery, passes: Ramp | Warp, seconds: float, again: float = 
 
     def over(s: float) -> Over:
         shown = shown_in(s, 0.8, min(seconds, 5.0) - 0.4)
-        rate = passes.rate(s % again if again else s)
+        rate = passes.shown_rate(s % again if again else s)
         return scenery.going(model(s), rate, caption=text, caption_shown=shown)
 
     captions = (Caption(0.8, min(seconds, 5.0) - 0.4, text),)

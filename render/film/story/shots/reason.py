@@ -98,7 +98,7 @@ def reason(scenery: Scenery) -> Shot | None:
     labels = notes(scenery, picture(begins - 0.1)) if scenery.forces is not None else ()
 
     def over(s: float) -> Over:
-        rate = ramp.rate(s) if s < stop else 0.0 if s < begins else after.rate(s - begins)
+        rate = ramp.shown_rate(s) if s < stop else 0.0 if s < begins else after.shown_rate(s - begins)
         return scenery.going(
             model(s), rate, caption=text, caption_shown=shown_in(s, stop - 0.3, begins + 0.3),
             notes=labels, notes_shown=shown_in(s, stop + 0.7 * grows, begins),
@@ -187,7 +187,7 @@ def loop(scenery: Scenery, seconds: float) -> Shot:
         here = next((row for row in captions if row.start <= s < row.end), None)
         dark = 0.0 if clock.repeats else 1 - min(s / DIP, (seconds - s) / DIP, 1.0)
         return scenery.going(
-            ramp.time_at(s), ramp.rate(s), caption=here.text if here else "", dark=max(dark, 0.0),
+            ramp.time_at(s), ramp.shown_rate(s), caption=here.text if here else "", dark=max(dark, 0.0),
             caption_shown=shown_in(s, here.start, here.end, 0.25) if here else 0.0,
             notes=labels, notes_shown=shown_in(s, stop + 0.7 * LOOP_GROWS, begins),
         )  # fmt: skip

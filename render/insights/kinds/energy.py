@@ -10,16 +10,22 @@ from typing import Any
 import numpy as np
 
 from render.insights.insight import Insight
-from render.insights.ratios import held_ratio
+from render.insights.kinds.ratios import held_ratio
 from render.insights.seen import TURN, Array, Output, Seen, amount, body, insight, load
 from shared.contract import ContactMotion, ForceMotion
 
 LOST = 1e-3
 """Part of the energy that moves below which nothing is lost."""
+STANDS = 0.01
+"""Part of its largest kinetic energy with which a motion all but stands."""
+BACK = 2e-3
+"""Part of its range by which a place or a speed is away from where it began, if it is back."""
 SMALL = 0.02
 """Part of the largest loss below which another is not counted."""
 SOFT = 1e-5
 """Part of the energy that moves below which impacts are none."""
+ALWAYS = 0.98
+"""Part of the time from which on a contact always sticks."""
 LEAST_SWINGS = 3
 
 
@@ -30,8 +36,11 @@ def energy(seen: Seen) -> Iterator[Insight]:
         yield from swings(seen)
         yield from slides(seen)
         yield from orbits(seen)
+        yield from returns(seen)
+        yield from climbs(seen)
         yield from isolation(seen)
     yield from impacts(seen)
+    yield from rhythm(seen)
     for name, contact in seen.motion.contacts.items():
         yield from sticking(seen, name, contact)
     yield from turns_of_cycle(seen)
@@ -58,6 +67,7 @@ def losses(seen: Seen) -> Iterator[Insight]:
                 most=amount(float(np.ptp(kinetic)), "J"),
             )  # fmt: skip
         return
+    candidates = len(taken)
     taken = {name: lost for name, lost in taken.items() if lost > SMALL * max(taken.values())}
     total = sum(taken.values())
     name = max(taken, key=lambda each: taken[each])
@@ -73,7 +83,7 @@ def losses(seen: Seen) -> Iterator[Insight]:
         yield insight("losses", hits, "J", _whole(seen), 0.4 + 0.3 * of_all, "lost_in_impacts",
                       count=amount(count, "count"), **values)  # fmt: skip
         return
-    template = "lost_alone" if len(taken) == 1 else "lost_mostly"
+    template = "lost_mostly" if len(taken) > 1 else "lost_alone" if candidates == 1 else "lost_nearly"
     yield insight(
         "losses", taken[name], "J", _whole(seen), 0.4 + 0.3 * min(of_all, 1), template, joints=(name,),
         load=load(name), **values,
@@ -110,7 +120,6 @@ def swings(seen: Seen) -> Iterator[Insight]:
     if not len(gaps) or np.ptp(gaps) > 0.1 * gaps.mean():
         return
     period = float(gaps.mean())
-    middle = float(output.value[-1]) if _dies(tops) else float(np.mean([v for _, v in tops]) - output.travel / 2)
     small = small_period(seen, output)
     if small is not None and period > 1.02 * small:
         yield insight(
@@ -123,16 +132,15 @@ def swings(seen: Seen) -> Iterator[Insight]:
             "swing", period, "s", (times[0], times[1]), 0.45, bodies=(output.body,), body=body(output.body),
             period=amount(period, "s"),
         )  # fmt: skip
-    if _dies(tops) and len(tops) >= LEAST_SWINGS:
-        heights = np.array([value - middle for _, value in tops])
-        heights = heights[heights > 0]
-        if len(heights) >= LEAST_SWINGS:
-            kept = float((heights[-1] / heights[0]) ** (1 / (len(heights) - 1)))
-            if kept < 0.995:
-                yield insight(
-                    "decay", kept, "", (times[0], times[-1]), 0.7, bodies=(output.body,), body=body(output.body),
-                    lost=amount(1 - kept, "share"),
-                )  # fmt: skip
+    ends = sorted([*tops, *((at, -value) for at, value in peaks(seen.time, -output.value))])
+    widths = np.abs(np.diff([value for _, value in ends]))
+    if _dies(tops) and len(tops) >= LEAST_SWINGS and np.all(np.diff(widths) < 0):
+        kept = float((widths[-1] / widths[0]) ** (2 / (len(widths) - 1)))
+        if kept < 0.995:
+            yield insight(
+                "decay", kept, "", (ends[0][0], ends[-1][0]), 0.7, bodies=(output.body,), body=body(output.body),
+                lost=amount(1 - kept, "share"),
+            )  # fmt: skip
 
 
 def slides(seen: Seen) -> Iterator[Insight]:
@@ -237,6 +245,22 @@ def impacts(seen: Seen) -> Iterator[Insight]:
         )  # fmt: skip
 
 
+def rhythm(seen: Seen) -> Iterator[Insight]:
+    """Yield the contact that is hit evenly, most often of all."""
+    times: dict[str, list[float]] = {}
+    for event in seen.motion.events:
+        if event.what == "impact":
+            times.setdefault(event.name, []).append(event.time)
+    for name, hits in sorted(times.items(), key=lambda row: -len(row[1])):
+        gaps = np.diff(hits)
+        if len(gaps) > 1 and np.ptp(gaps) < 0.01 * gaps.mean():
+            yield insight(
+                "rhythm", gaps.mean(), "s", (hits[0], hits[1]), 0.6, joints=(name,), load=load(name),
+                period=amount(gaps.mean(), "s"),
+            )  # fmt: skip
+            return
+
+
 def _comes_back(seen: Seen) -> bool:
     """Return True if some contact throws back what meets it: then impacts take no energy."""
     shares = [rebound(seen, contact, event.time) for event in seen.motion.events if event.what == "impact"
@@ -261,8 +285,9 @@ def sticking(seen: Seen, name: str, contact: ContactMotion) -> Iterator[Insight]
         share = seen.share(mask)
         if share > 0.03:
             start, end = next(seen.stretches(mask))
+            template = f"{template}_always" if share > ALWAYS else template
             yield insight(
-                "sticking", share, "", (start, end), 0.4 + 0.3 * (state == "sticks" and share < 0.98), template,
+                "sticking", share, "", (start, end), 0.4 + 0.3 * (state == "sticks" and share < ALWAYS), template,
                 joints=(name,), bodies=tuple(each for each in contact.bodies if each != "ground"), load=load(name),
                 share=amount(share, "share"),
             )  # fmt: skip
@@ -274,8 +299,8 @@ def sticking(seen: Seen, name: str, contact: ContactMotion) -> Iterator[Insight]
 def orbits(seen: Seen) -> Iterator[Insight]:
     """Yield how near and how far two bodies come that attract each other, and their speeds there."""
     for name, force in seen.motion.forces.items():
-        if force.kind != "gravitation" or force.value is None:
-            continue
+        if force.value is None or len(force.actions) != 2 or max(force.potential) >= 0:
+            continue  # what attracts holds less than nothing
         distance = np.asarray(force.value)
         near, far = int(distance.argmin()), int(distance.argmax())
         ratio = float(distance[far] / distance[near])
@@ -300,10 +325,53 @@ def orbits(seen: Seen) -> Iterator[Insight]:
         return
 
 
+def returns(seen: Seen) -> Iterator[Insight]:
+    """Yield when all bodies are where they began, and as fast, of a motion that is let go."""
+    if seen.motion.drivers:
+        return
+    centres = seen.centres.values()
+    away = np.zeros(len(seen.time))
+    for part in ("x", "y", "vx", "vy"):
+        rows = [getattr(centre, part) for centre in centres]
+        scale = max(float(np.ptp(row)) for row in rows)
+        away = np.maximum(away, np.max([np.abs(row - row[0]) for row in rows], axis=0) / (scale or 1.0))
+    out = np.flatnonzero(away > 0.2)
+    if not len(out):
+        return
+    near = np.flatnonzero((away < BACK) & (np.arange(len(away)) > out[0]))
+    if len(near):
+        at = float(seen.time[near[0]])
+        yield insight("returns", at - float(seen.time[0]), "s", (float(seen.time[0]), at), 0.6,
+                      bodies=tuple(seen.motion.bodies), period=amount(at - float(seen.time[0]), "s"))  # fmt: skip
+
+
+def climbs(seen: Seen) -> Iterator[Insight]:
+    """Yield how much of its height a motion under weight alone gets back when it first stands still again."""
+    energy_of, events = seen.motion.energy, seen.motion.events
+    if seen.motion.drivers or any(np.any(each.potential) for each in seen.motion.forces.values()):
+        return
+    kinetic, height = np.asarray(energy_of.kinetic), np.asarray(energy_of.potential)
+    top = float(kinetic.max())
+    if top <= 0 or kinetic[0] > 1e-6 * top or any(event.energy < -LOST * top for event in events):
+        return
+    moving = np.flatnonzero(kinetic > 0.2 * top)
+    again = np.flatnonzero((kinetic < STANDS * top) & (np.arange(len(kinetic)) > moving[0]))
+    if not len(again):
+        return
+    first = again[: int(np.argmax(np.append(np.diff(again) > 1, True))) + 1]
+    k = int(first[kinetic[first].argmin()])
+    share = (float(height[k]) - float(height[:k].min())) / (float(height[0]) - float(height[:k].min()))
+    template = "climbs_back" if share > 1 - STANDS else "climbs"
+    yield insight(
+        "climbs", share, "", seen.at(k), 0.5 if share > 1 - STANDS else 0.9, template,
+        bodies=tuple(seen.motion.bodies), share=amount(share, "share"), at=amount(seen.time[k], "s"),
+    )  # fmt: skip
+
+
 def isolation(seen: Seen) -> Iterator[Insight]:
     """Yield how much more gently a sprung body is shaken than what is at the other end of its spring."""
     for name, force in seen.motion.forces.items():
-        if (force.look != "coil" and "spring" not in force.kind) or len(force.actions) != 2:
+        if force.look != "coil" or len(force.actions) != 2:
             continue
         bodies = [action.body for action in force.actions if action.body in seen.centres]
         if len(bodies) != 2 or not any(seen.motion.gravity):

@@ -19,6 +19,8 @@ LEVEL = 0.02
 """A quantity that changes by less than this part of its largest has no peak."""
 CLOSES = 0.02
 """Part by which the work of a driver and what comes back may differ, of which nothing is left."""
+ALL = 0.99
+"""Part of the time from which on something is called all the time."""
 GIVEN_BACK = 0.02
 """Part of a driver's work that has to come back before it is said to brake."""
 MAIN, ALONE = 0.7, 0.97
@@ -103,7 +105,8 @@ def _braking(seen: Seen, name: str, each: DriverMotion | ForceMotion, effort: Ar
     share = seen.share(brakes)
     is_closed = abs(given - back) < CLOSES * given and seen.repeats
     template = "all_back" if is_closed else "is_driven" if back > given else "brakes"
-    strength = 0.55 if is_closed or template == "is_driven" else 0.5 + 0.5 * back / given
+    template = "is_driven_always" if template == "is_driven" and share > ALL else template
+    strength = 0.55 if is_closed or template.startswith("is_driven") else 0.5 + 0.5 * back / given
     yield insight(
         "power_sign", share, "", (start, end), strength, template,
         joints=(name,), load=load(name), share=amount(share, "share"), most=amount(most, each.effort_unit),

@@ -46,28 +46,55 @@ def dwell(seen: Seen, output: Output) -> Iterator[Insight]:
     if moved_by is None or not moved_by.is_even:
         return
     size = np.abs(output.rate)
-    exact = size <= REST * size.max()
-    resting = exact if seen.share(exact) > LEAST_REST else size <= NEARLY * size.max()
-    stretches = [(a, b) for a, b in seen.stretches(resting) if b - a > LEAST_REST * seen.span / moved_by.turns]
+    exact = rests(seen, size, REST)
+    is_exact = sum(end - start for start, end in exact) > LEAST_REST * seen.span
+    resting = exact if is_exact else rests(seen, size, NEARLY)
+    stretches = [(a, b) for a, b in resting if b - a > LEAST_REST * seen.span / moved_by.turns]
     if not stretches:
         return
     start, end = stretches[0]
-    if resting is not exact and _moved(seen, output, start, end) > STAYS * output.travel:
+    if not is_exact and _moved(seen, output, start, end) > STAYS * output.travel:
         return
-    share = seen.share(resting)
+    share = sum(b - a for a, b in stretches) / seen.span
     angle = _turned(seen, start, end)
     locking = next((name for name, each in seen.motion.joints.items()
                     if output.body in each.bodies and each.shape is not None and each.shape.slots), "")  # fmt: skip
     times = round(len(stretches) / moved_by.turns)
-    template = (
-        "dwell_locked" if locking else "dwell_times" if times > 1 else "dwell" if resting is exact else "dwell_nearly"
-    )
+    template = "dwell_locked" if locking else "dwell_times" if times > 1 else "dwell" if is_exact else "dwell_nearly"
     yield insight(
-        "dwell", share, "", (start, end), 0.5 + share if resting is exact else 0.25 + share, template,
+        "dwell", share, "", (start, end), 0.5 + share if is_exact else 0.25 + share, template,
         bodies=(output.body, moved_by.body), joints=(locking,) if locking else (), body=body(output.body),
         share=amount(share, "share"), crank=body(moved_by.body), angle=amount(angle, "deg"),
         times=amount(times, "times"),
     )  # fmt: skip
+
+
+def rests(seen: Seen, size: Array, part: float) -> list[tuple[float, float]]:
+    """Return start and end (s) of the times in which a rate (T,) is below a part of its largest, longest first.
+
+    Between the samples of rest and of motion the beginning is found from the samples beyond.
+    """
+    mask, time = size <= part * size.max(), seen.time
+    rows = []
+    for start, end in seen.stretches(mask):
+        first, last = (int(np.searchsorted(time, at)) for at in (start, end - seen.span if end > time[-1] else end))
+        begins, ends = _edge(time, size, first, -1), _edge(time, size, last, 1)
+        rows.append((start - begins, end + ends))
+    return rows
+
+
+def _edge(time: Array, size: Array, row: int, way: int) -> float:
+    """Return the time (s) from a row at rest to where a rate begins, one way; 0 at the ends of the motion.
+
+    The rate is taken to begin as a line or a parabola, whichever of them the next three samples are nearer to.
+    """
+    rows = row + way * np.arange(1, 4)
+    if rows.min() < 0 or rows.max() >= len(time) or np.any(np.diff(size[rows]) <= 0):
+        return 0.0
+    steps = np.abs(time[rows] - time[row])
+    lines = [size[rows] ** (1 / power) for power in (1, 2)]
+    w = min(lines, key=lambda line: abs(float(line[2] - 2 * line[1] + line[0])) / float(line[2]))
+    return min(max(float(steps[0] - w[0] * (steps[1] - steps[0]) / (w[1] - w[0])), 0.0), float(steps[0]))
 
 
 def _moved(seen: Seen, output: Output, start: float, end: float) -> float:
@@ -94,8 +121,8 @@ def quick_return(seen: Seen, output: Output) -> Iterator[Insight]:
         return
     rows = seen.window()
     turn = float(seen.time[rows][-1] - seen.time[rows][0])
-    rests = seen.share(np.abs(output.rate) <= REST * float(np.abs(output.rate).max())) > LEAST_REST
-    if rests or not _comes_back(output.value[rows], output.travel):
+    resting = sum(end - start for start, end in rests(seen, np.abs(output.rate), REST))
+    if resting > LEAST_REST * seen.span or not _comes_back(output.value[rows], output.travel):
         return
     reversals = [(at, sign) for at, sign in seen.crossings(output.rate) if at < seen.time[0] + turn * (1 - 1e-9)]
     if len(reversals) != 2:
@@ -249,8 +276,10 @@ def level(seen: Seen) -> Iterator[Insight]:
         centre = seen.centres[name]
         travel = float(np.hypot(np.ptp(centre.x), np.ptp(centre.y)))
         if travel > 0.01 * seen.size:
+            upright = abs(math.remainder(float(seen.theta[name][0]), math.pi / 2)) < 1e-3
+            template = "level" if upright and any(seen.motion.gravity) else "keeps_direction"
             yield insight(
-                "level", travel, "m", (float(seen.time[0]), float(seen.time[-1])), 0.75, bodies=(name,),
+                "level", travel, "m", (float(seen.time[0]), float(seen.time[-1])), 0.75, template, bodies=(name,),
                 body=body(name), travel=amount(travel, "m"),
             )  # fmt: skip
 
@@ -263,13 +292,14 @@ def partners(seen: Seen) -> Iterator[Insight]:
 
 
 def _partners(seen: Seen, outputs: list[Output]) -> Iterator[Insight]:
-    """Yield the largest group of outputs whose rates are one but for the sign."""
+    """Yield groups of outputs whose velocities are one but for the sign."""
     groups: list[dict[str, int]] = []
     for output in outputs:
+        own = _velocity(seen, output)
         for group in groups:
-            first = next(each for each in outputs if each.body == next(iter(group)))
-            size = float(np.abs(first.rate).max())
-            sign = next((s for s in (1, -1) if np.abs(output.rate - s * first.rate).max() < 1e-6 * size), 0)
+            first = _velocity(seen, next(each for each in outputs if each.body == next(iter(group))))
+            size = float(np.abs(first).max())
+            sign = next((s for s in (1, -1) if np.abs(own - s * first).max() < 1e-6 * size), 0)
             if sign:
                 group[output.body] = sign
                 break
@@ -287,6 +317,12 @@ def _partners(seen: Seen, outputs: list[Output]) -> Iterator[Insight]:
             )  # fmt: skip
         elif len(alike) > 1:
             yield insight("mirror", 1.0, "", when, 0.55, "together", bodies=alike, bodies_one=body(*alike))
+
+
+def _velocity(seen: Seen, output: Output) -> Array:
+    """Return the velocity of a slider (2 T,), or the rate of a rocker (T,)."""
+    centre = seen.centres[output.body]
+    return np.concatenate([centre.vx, centre.vy]) if output.slides else output.rate
 
 
 def rolls(seen: Seen) -> Iterator[Insight]:
@@ -309,5 +345,5 @@ def _is_round(seen: Seen, name: str) -> bool:
     """Return True if a contact or joint says that the body has a radius and meets ground."""
     groups = (seen.motion.contacts, seen.motion.joints)
     shapes = [each.shape for group in groups for each in group.values()
-              if set(each.bodies) == {"ground", name} and "gear" not in each.kind]  # fmt: skip
+              if set(each.bodies) == {"ground", name} and not (each.shape and each.shape.teeth)]  # fmt: skip
     return any(shape is not None and (shape.radius_second or shape.radius_first) for shape in shapes)

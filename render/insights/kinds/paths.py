@@ -27,13 +27,14 @@ def paths(seen: Seen) -> Iterator[Insight]:
     for name, traced in seen.motion.points.items():
         way = np.stack([traced.x, traced.y], axis=1)
         size = float(np.hypot(*np.ptp(way, axis=0)))
-        if size < 1e-2 * seen.size or traced.body in seen.guided:
+        is_held = any(traced.body in each.bodies for each in seen.motion.joints.values())
+        if not is_held or size < 1e-2 * seen.size or traced.body in seen.guided:
             continue
         rows = seen.window()
         if not seen.repeats and seen.motion.analysis == "simulation":
             yield from reach(seen, name, way)
             continue
-        found = list(straight(seen, name, way[rows], size))
+        found = [] if traced.body in seen.pinned else list(straight(seen, name, way[rows], size))
         yield from found
         if any(each.template == "straight_exactly" for each in found):
             continue
@@ -80,6 +81,7 @@ def straight(seen: Seen, name: str, way: Array, size: float) -> Iterator[Insight
     if seen.input is not None and seen.input.turns:
         template = "straight_between"
         values |= {
+            "crank": body(seen.input.body),
             "begin": amount(seen.angle_at(start), "place"),
             "to": amount(seen.angle_at(end % _end(seen)), "place"),
         }

@@ -34,7 +34,7 @@ def passing(seen: Seen) -> Iterator[Insight]:
     if len(sliding) > 1:
         yield from dead_centres(seen, sliding)
     for name, joint in seen.motion.joints.items():
-        if joint.kind.startswith("cam"):
+        if joint.pair is None and joint.shape is not None and joint.shape.outline_closed:
             yield from pressure_angle(seen, name, joint)
 
 
@@ -51,8 +51,9 @@ def transmission(seen: Seen, loop: Loop) -> Iterator[Insight]:
         template = f"leans{'' if least < LEAST else '_good'}"
     lean = math.pi / 2 - least
     where: dict[str, Any] = {} if loop.slides else {"angle": amount(float(loop.angle[k]), "place")}
+    where |= {"side": amount(math.tan(lean), "share")} if loop.slides else {}
     yield insight(
-        "transmission", least, "rad", (at, at), 0.3 + abs(LEAST - least), template,
+        "transmission", least, "rad", (at, at), 0.3 + LEAST - least if least < LEAST else 0.35, template,
         bodies=(loop.crank, loop.coupler, loop.follower), coupler=body(loop.coupler), follower=body(loop.follower),
         least=amount(least, "deg"), lean=amount(lean, "deg"),
 **where,

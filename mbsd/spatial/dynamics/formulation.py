@@ -1,0 +1,308 @@
+"""Reference coordinates in space as a formulation of the compiled loop (mbsd/dynamics/formulation.py).
+
+    q = (r, e)    v = (r', w), w about principal axes    r' = r',  e' = e (0, w) / 2
+    M a + J^T lam = Q,   J a = gamma,   M = diag(m, m, m, I1, I2, I3)
+    Q = (m g, (I2 - I3) w2 w3, (I3 - I1) w3 w1, (I1 - I2) w1 w2)
+
+Rows are evaluated in the world, as driven motions do, and their torques turned into body axes: tau_b = A^T tau. Stages
+need no unit e; a projection makes it one, and moves q and v in the metric of the masses.
+
+Where joints repeat each other some rows are in use. They are chosen anew after an accepted step in which the least part
+of a row that is its own falls below a limit, never within a step.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from mbsd.compiling.jit import apart, inlined, internal
+from mbsd.dynamics.formulation import add_formulation, record_output
+from mbsd.dynamics.state import NEXT, WORK
+from mbsd.equations.laws import evaluate_laws
+from mbsd.spatial.dynamics.envelope import factor, solve
+from mbsd.spatial.equations.evaluation import evaluate_gamma, evaluate_nu, evaluate_position
+from mbsd.spatial.equations.forces import apply_forces
+
+
+class Switches(NamedTuple):
+    """Forces that switch, of which there are none yet."""
+
+    switch: Any
+
+
+class Table(NamedTuple):
+    """Rows that events switch, of which there are none yet."""
+
+    rows: Any
+    table: Any
+
+
+class SpaceDynamics(NamedTuple):
+    """A mechanism in space as integrators read it. Entries: three idle ones, then 7 or 6 of each body."""
+
+    system: Any
+    """mbsd.spatial.equations.system.System"""
+    laws: Any
+    """mbsd.equations.laws.Laws: 1 .. drivers are the drivers' laws of time."""
+    loads: Switches
+    schur: Table
+    sliding: Table
+    envelope: Any
+    """mbsd.spatial.dynamics.envelope.Envelope"""
+    factors: Any
+    inertia: Any
+    """(3 + 7 n,) kg, kg m^2; zero for idle entries."""
+    inverse: Any
+    weight: Any
+    """(3 + 7 n,) m g."""
+    per_size: Any
+    world: Any
+    """(3 + 6 n,) scratch: velocities with w in the world."""
+    pushed: Any
+    """(m,) scratch: multipliers of forces."""
+    limit: Any
+    """(1,) part of a row below which other rows are looked for; 0: never."""
+    turns: Any
+    """(T, turns) counted angles at the outputs."""
+
+
+@internal
+def _to_body_axes(dyn, ws):
+    """Turn the torques of J from the world into the axes of their bodies."""
+    env = dyn.envelope
+    for e in range(env.arm.shape[0]):
+        row = ws.jac[env.rows[env.arm[e, 0]]]
+        c = env.arm[e, 1] + 3
+        m = ws.rotation[env.arm[e, 2]]
+        x, y, z = row[c], row[c + 1], row[c + 2]
+        for k in range(3):
+            row[c + k] = m[0, k] * x + m[1, k] * y + m[2, k] * z
+
+
+@internal
+def _to_world(dyn, ws, v):
+    """Fill dyn.world with velocities v whose w are in the axes of their bodies."""
+    out = dyn.world
+    for b in range(1, dyn.system.mass.shape[0]):
+        c = 6 * b - 3
+        m = ws.rotation[b]
+        for k in range(3):
+            out[c + k] = v[c + k]
+            out[c + 3 + k] = m[k, 0] * v[c + 3] + m[k, 1] * v[c + 4] + m[k, 2] * v[c + 5]
+
+
+@internal
+def _respond(dyn, ws, force, gamma, a, lam):
+    """Fill a, lam (m,) of M a + J^T lam = force, J a = gamma, by factors of this pose; force is spent."""
+    env = dyn.envelope
+    side = dyn.factors.side
+    for r in range(lam.shape[0]):
+        lam[r] = 0.0
+    for r in range(env.rows.shape[0]):
+        side[0, r] = -gamma[env.rows[r]]
+    for e in range(env.arm.shape[0]):
+        r = env.arm[e, 0]
+        c = env.arm[e, 1]
+        d = 6 * env.arm[e, 2] - 3
+        for k in range(6):
+            side[0, r] += ws.jac[env.rows[r], c + k] * dyn.inverse[d + k] * force[d + k]
+    solve(env, dyn.factors, 1)
+    for e in range(env.arm.shape[0]):
+        r = env.arm[e, 0]
+        c = env.arm[e, 1]
+        d = 6 * env.arm[e, 2] - 3
+        for k in range(6):
+            force[d + k] -= side[0, r] * ws.jac[env.rows[r], c + k]
+    for r in range(env.rows.shape[0]):
+        lam[env.rows[r]] = side[0, r]
+    for c in range(3, a.shape[0]):
+        a[c] = dyn.inverse[c] * force[c]
+
+
+@apart
+def accelerate(dyn, scratch, t, state, a, lam):
+    """See formulation.py of the plane; returns the power of forces and drivers (W)."""
+    ws = scratch.ws
+    v = state[1]
+    force = scratch.force
+    gamma = ws.right[0]
+    if scratch.drive.shape[0] > 1:
+        evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
+    evaluate_position(dyn.system, state[0], scratch.drive, ws)
+    _to_world(dyn, ws, v)
+    evaluate_gamma(dyn.system, dyn.world, scratch.drive, ws, gamma)
+    power = 0.0
+    for c in range(ws.load.shape[0]):
+        ws.load[c] = 0.0
+    if dyn.system.force.shape[0] > 0:
+        power = apply_forces(dyn.system, dyn.laws, t, dyn.world, ws, ws.load, dyn.pushed)
+    _to_body_axes(dyn, ws)
+    scratch.report[0] = factor(dyn.envelope, dyn.factors, ws.jac, dyn.inverse)
+    for c in range(force.shape[0]):
+        force[c] = dyn.weight[c]
+    for b in range(1, dyn.system.mass.shape[0]):
+        c = 6 * b
+        i = dyn.system.inertia[b]
+        force[c] = (i[1] - i[2]) * v[c + 1] * v[c + 2]
+        force[c + 1] = (i[2] - i[0]) * v[c + 2] * v[c]
+        force[c + 2] = (i[0] - i[1]) * v[c] * v[c + 1]
+        m = ws.rotation[b]
+        for k in range(3):
+            force[c - 3 + k] += ws.load[c - 3 + k]
+            force[c + k] += m[0, k] * ws.load[c] + m[1, k] * ws.load[c + 1] + m[2, k] * ws.load[c + 2]
+    _respond(dyn, ws, force, gamma, a, lam)
+    for r in range(dyn.system.held, lam.shape[0]):
+        lam[r] = dyn.pushed[r]
+    for n in range(dyn.system.driven.shape[0]):
+        power -= lam[dyn.system.driven[n, 0]] * scratch.drive[dyn.system.driven[n, 1], 1]
+    return power
+
+
+@inlined
+def _normalise(q, c):
+    """Make q[c : c + 4] a unit; returns by how much it was none."""
+    size = math.sqrt(q[c] ** 2 + q[c + 1] ** 2 + q[c + 2] ** 2 + q[c + 3] ** 2)
+    for k in range(4):
+        q[c + k] /= size
+    return abs(size - 1.0)
+
+
+@internal
+def move(q, way):
+    """Move q (3 + 7 n,) by way (3 + 6 n,): places, and small rotations in body axes; e stays a unit."""
+    for b in range(1, (q.shape[0] + 4) // 7):
+        c = 7 * b - 4
+        d = 6 * b - 3
+        e0, e1, e2, e3 = q[c + 3], q[c + 4], q[c + 5], q[c + 6]
+        x, y, z = 0.5 * way[d + 3], 0.5 * way[d + 4], 0.5 * way[d + 5]
+        for k in range(3):
+            q[c + k] += way[d + k]
+        q[c + 3] = e0 - e1 * x - e2 * y - e3 * z
+        q[c + 4] = e1 + e0 * x + e2 * z - e3 * y
+        q[c + 5] = e2 + e0 * y + e3 * x - e1 * z
+        q[c + 6] = e3 + e0 * z + e1 * y - e2 * x
+        _normalise(q, c + 3)
+
+
+@apart
+def project(dyn, scratch, t, state, passes):
+    """See formulation.py of the plane."""
+    ws = scratch.ws
+    env = dyn.envelope
+    side = dyn.factors.side
+    change = scratch.change
+    nu = ws.right[1]
+    largest = 0.0
+    for b in range(1, dyn.system.mass.shape[0]):
+        largest = max(largest, _normalise(state[0], 7 * b - 1))
+    scratch.report[1] = largest
+    scratch.report[2] = 0.0
+    if env.rows.shape[0] == 0:
+        return
+    if scratch.drive.shape[0] > 1:
+        evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
+    evaluate_nu(dyn.system, scratch.drive, nu)
+    for step in range(passes):
+        evaluate_position(dyn.system, state[0], scratch.drive, ws)
+        _to_body_axes(dyn, ws)
+        factor(env, dyn.factors, ws.jac, dyn.inverse)
+        for r in range(env.rows.shape[0]):
+            side[0, r] = ws.phi[env.rows[r]]
+            side[1, r] = -nu[env.rows[r]]
+        for c in range(change.shape[1]):
+            change[0, c] = 0.0
+            change[1, c] = 0.0
+        for e in range(env.arm.shape[0]):
+            d = 6 * env.arm[e, 2] - 3
+            for k in range(6):
+                side[1, env.arm[e, 0]] += ws.jac[env.rows[env.arm[e, 0]], env.arm[e, 1] + k] * state[1, d + k]
+        solve(env, dyn.factors, 2)
+        for e in range(env.arm.shape[0]):
+            r = env.arm[e, 0]
+            d = 6 * env.arm[e, 2] - 3
+            for k in range(6):
+                push = dyn.inverse[d + k] * ws.jac[env.rows[r], env.arm[e, 1] + k]
+                change[0, d + k] -= push * side[0, r]
+                change[1, d + k] -= push * side[1, r]
+        largest = 0.0
+        for c in range(3, change.shape[1]):
+            state[1, c] += change[1, c]
+            part = abs(change[0, c]) * dyn.per_size[c]
+            if not part <= largest:
+                largest = part
+        move(state[0], change[0])
+        scratch.report[2] = largest
+        if step == 0:
+            scratch.report[1] = max(scratch.report[1], largest)
+
+
+@internal
+def rates(dyn, q, v, out):
+    """See formulation.py of the plane."""
+    for b in range(1, dyn.system.mass.shape[0]):
+        c = 7 * b - 4
+        d = 6 * b - 3
+        e0, e1, e2, e3 = q[c + 3], q[c + 4], q[c + 5], q[c + 6]
+        x, y, z = 0.5 * v[d + 3], 0.5 * v[d + 4], 0.5 * v[d + 5]
+        for k in range(3):
+            out[c + k] = v[d + k]
+        out[c + 3] = -(e1 * x + e2 * y + e3 * z)
+        out[c + 4] = e0 * x + e2 * z - e3 * y
+        out[c + 5] = e0 * y + e3 * x - e1 * z
+        out[c + 6] = e0 * z + e1 * y - e2 * x
+
+
+@internal
+def _count_turns(dyn, scratch, q):
+    """Fill scratch.ws.turn at q (3 + 7 n,), if there are turns."""
+    if scratch.ws.turn.shape[0] > 0:
+        evaluate_position(dyn.system, q, scratch.drive, scratch.ws)
+
+
+@internal
+def settle(dyn, scratch, t, state, fresh):
+    """Count turns from the accepted state on; returns whether other rows should be looked for."""
+    _count_turns(dyn, scratch, state[0])
+    for n in range(scratch.ws.guess.shape[0]):
+        scratch.ws.guess[n] = scratch.ws.turn[n]
+    return scratch.report[0] < dyn.limit[0]
+
+
+@internal
+def record_all(dyn, scratch, out, k, t, work):
+    """Write output k from scratch.state, with its turns."""
+    record_output(dyn, scratch, out, k, work)
+    for n in range(scratch.ws.turn.shape[0]):
+        dyn.turns[k, n] = scratch.ws.turn[n]
+    return True
+
+
+@internal
+def record_here(dyn, scratch, state, out):
+    """Write the next output from the state itself, with its turns."""
+    k = state.count[NEXT]
+    _count_turns(dyn, scratch, state.y[0])
+    for n in range(scratch.ws.turn.shape[0]):
+        dyn.turns[k, n] = scratch.ws.turn[n]
+    for c in range(state.y.shape[1]):
+        out.y[k, 0, c] = state.y[0, c]
+        out.y[k, 1, c] = state.y[1, c]
+        out.a[k, c] = state.dy[1, c]
+    for r in range(state.lam.shape[0]):
+        out.lam[k, r] = state.lam[r]
+    out.work[k] = state.clock[WORK]
+    out.margin[k] = scratch.report[0]
+    state.count[NEXT] = k + 1
+
+
+add_formulation(
+    SpaceDynamics,
+    accelerate=accelerate,
+    project=project,
+    rates=rates,
+    settle=settle,
+    record=record_all,
+    record_all=record_all,
+    record_here=record_here,
+)

@@ -1,0 +1,1 @@
+"""Kinds of insights by their subject: each file finds those of one."""

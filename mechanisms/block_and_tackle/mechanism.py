@@ -1,4 +1,4 @@
-"""A block and tackle: a small counterweight lifts twice its own load, half as far.
+"""A block and tackle: a counterweight lifts nearly twice its own weight, half as far.
 One rope runs from the beam down round the loose block, up over the fixed pulley and down to the counterweight. Each of
 its strands pulls alike, so two of them carry the block.
 """

@@ -36,6 +36,8 @@ FEWER, FEWEST = 4, 4
 """Samples of a frame in those of its small picture, which has at least so many."""
 RAYS = ("visible_camera", "visible_diffuse", "visible_glossy", "visible_transmission", "visible_shadow")
 """All kinds that a studio without mist has."""
+NUDGE = 0.25
+"""Pixels by which borders are moved: Blender cuts off what is left of a pixel, and keeps them in 32 bits."""
 LAUNCH = 30_000.0
 """Samples that take as long as the start of a render."""
 WORTH = 0.8
@@ -273,10 +275,10 @@ class Plates:
         render.resolution_x, render.resolution_y = self.job.width // size, self.job.height // size
         render.use_border = render.use_crop_to_border = rect is not None
         if rect is not None:
-            top, bottom, left, right = rect
-            height, width = self.job.height // self._times, self.job.width // self._times
-            render.border_min_x, render.border_max_x = left / width, right / width
-            render.border_min_y, render.border_max_y = 1 - bottom / height, 1 - top / height
+            top, bottom, left, right = (self._times * edge for edge in rect)
+            height, width = self.job.height, self.job.width
+            render.border_min_x, render.border_max_x = (left + NUDGE) / width, (right + NUDGE) / width
+            render.border_min_y, render.border_max_y = 1 - (bottom - NUDGE) / height, 1 - (top - NUDGE) / height
         cycles.samples = samples
         layer.cycles.denoising_store_passes = guides
         path = self.folder / ".passes.exr"

@@ -43,8 +43,8 @@ MIRRORS = 0.1
 """Part of the light that a surface mirrors above which it is rendered wherever its light changes: metal."""
 CLOSED = 2
 """Half the width of gaps in a region that are rendered as well: the denoiser needs its neighbours."""
-SPECK = 16
-"""Pixels of a region, and of a hole in one, at least: smaller ones are noise."""
+SPECK = 24
+"""Pixels of a change of light, and of a hole in a region, at least: smaller ones are noise."""
 MARGIN, BLEND = 2, 1
 """Pixels of the small picture around what differs, and how many of these region and plate take to become each other."""
 NEARER, ALBEDO, TURNED = 1e-4, 0.01, 0.01
@@ -71,7 +71,7 @@ def change_of(frame: Small, plate: Small) -> Change:
     expected = plate.light * (1 + np.where(mirrors, 0.0, light))
     there = plate.light * (1 + _mean(more, weight, _near))
     off = np.abs(seen(expected) - seen(there)).max(axis=-1)
-    region = _without_specks(_closed(body | (off > DIFFERENT)))
+    region = _closed(body | _without_specks(_closed(off > DIFFERENT)))
     return Change(~_without_specks(~ndimage.binary_dilation(region, iterations=MARGIN)), light)
 
 

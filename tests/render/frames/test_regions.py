@@ -128,6 +128,16 @@ def test_what_moved_is_rendered_with_what_is_around_it() -> None:
     assert change.region.mean() < 0.2
 
 
+def test_a_mark_of_a_pixel_is_seen() -> None:
+    still = plate()
+    albedo = still.albedo.copy()
+    albedo[20, 30] = 0.9
+    frame = Small(still.light, still.noisy, still.depth, albedo, still.normal, still.mirrored)
+    region = change_of(frame, still).region
+    assert region[20, 27:34].all()
+    assert region[17:24, 30].all()
+
+
 def test_soft_shadows_are_taken_from_the_light_and_sharp_ones_are_rendered() -> None:
     y, x = np.mgrid[: SIZE[0], : SIZE[1]]
     soft = 1 - 0.3 * np.exp(-((y - 22) ** 2 + (x - 40) ** 2) / 2 / 10**2)

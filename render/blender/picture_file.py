@@ -16,7 +16,10 @@ COLOUR = (b"sRGB", b"gAMA", b"cHRM", b"iCCP")
 
 
 def make_plain(path: Path) -> None:
-    """Write the file anew with its picture alone, so that equal pictures are equal files; a cut file is left alone."""
+    """Write the file anew with its picture alone, so that equal pictures are equal files.
+
+    A cut file is left alone.
+    """
     content = path.read_bytes()
     plain = without_notes(content)
     if plain != content:
@@ -24,7 +27,7 @@ def make_plain(path: Path) -> None:
 
 
 def without_notes(content: bytes) -> bytes:
-    """Return the chunks that decide what is seen, bytes as they are; the same content if it is no whole PNG."""
+    """Return the chunks that decide what is seen; the same content if it is no whole PNG."""
     kept, place = [SIGNATURE], len(SIGNATURE)
     if not content.startswith(SIGNATURE):
         return content
@@ -96,7 +99,7 @@ RGB = b"\x08\x02\x00\x00\x00"
 
 
 def fault_of(content: bytes, width: int, height: int) -> str | None:
-    """Return the fault of bytes that should be a whole PNG of this size (pixels), in words after its name; or None.
+    """Return the fault of bytes that should be a whole PNG of this size (pixels); None if there is none.
 
     Its header is looked at first, so that no picture of another size is decoded; last, that its rows are all there and
     nothing follows them.
@@ -105,8 +108,10 @@ def fault_of(content: bytes, width: int, height: int) -> str | None:
 
 
 def fault_of_chunks(content: bytes, width: int, height: int) -> str | None:
-    """Return the same without decoding the rows: size, header, the checksum of every chunk, and nothing beside the
-    picture.
+    """Return the same without decoding the rows.
+
+    It looks at size, header and the checksum of every chunk, and for anything beside the picture.
+
     """
     if not content.startswith(SIGNATURE):
         return "is no PNG"
@@ -130,8 +135,10 @@ def fault_of_chunks(content: bytes, width: int, height: int) -> str | None:
 
 
 def most_bytes(width: int, height: int) -> int:
-    """Return bytes that a picture of this size has at most: three a pixel without any compression, and what is around
-    them.
+    """Return the most bytes that a picture of this size has.
+
+    They are three a pixel without any compression, and what is around them.
+
     """
     rows = (3 * width + 1) * height
     return rows + rows // 100 + 65_536

@@ -45,8 +45,10 @@ class Arrow:
 
 
 def sizes(spec: ArrowSpec, length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the factor of all thicknesses, and length of the shaft, for arrows of ``length`` (n,) (m); the cone is the
-    rest.
+    """Return the factor of all thicknesses and the length of the shaft, for arrows of ``length`` (n,) (m).
+
+    The cone is the rest.
+
     """
     factor = np.minimum(1.0, length / (STOUT * spec.point))
     return factor, length - factor * spec.point
@@ -55,7 +57,7 @@ def sizes(spec: ArrowSpec, length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def channels(
     arrow: Arrow, spec: ArrowSpec, tails: np.ndarray, tips: np.ndarray
 ) -> list[tuple[Any, str, list[np.ndarray]]]:
-    """Return the animated channels: object, property, and values of its components, for tails and tips (n, 3)."""
+    """Return the animated channels for tails and tips (n, 3): object, property, values of its components."""
     across = tips - tails
     length = np.hypot(across[:, 0], across[:, 1])
     there = length > 0
@@ -212,8 +214,7 @@ def arc_faces() -> tuple[list[tuple[int, ...]], list[tuple[int, ...]]]:
 
 
 def arc_vertices(spec: ArcSpec, centre: Point, sweep: float) -> np.ndarray:
-    """Return vertices ((RINGS + 2) * SIDES, 3), float32, of an arc about ``centre`` (m) that reaches ``sweep`` (rad)
-    round it.
+    """Return vertices ((RINGS + 2) * SIDES, 3), float32, of an arc of ``sweep`` (rad) about ``centre`` (m).
 
     Its middle is at FRONT; arcs shorter than STOUT cones shrink as a whole.
     """

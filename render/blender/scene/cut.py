@@ -26,9 +26,9 @@ WELDED = 1e-7
 
 
 def cut_open(mesh: Any, planes: Sequence[Plane], sharp: float) -> None:
-    """Cut away what is beyond all planes and close the mesh; edges that turn by more than ``sharp`` (rad) are sharp.
+    """Cut away what is beyond all planes and close the mesh.
 
-    Only closed meshes are closed again, as those of parts are.
+    Edges that turn by more than ``sharp`` (rad) are sharp. Only closed meshes are closed again, as those of parts are.
     """
     import bmesh
 
@@ -114,9 +114,9 @@ BEYOND = 4.0
 
 
 def cut_in_passing(scene: Any, spec: Scene, solids: dict[str, Any], painted: bool) -> None:
-    """Cut the ``solids`` (by ``body/piece``) of pieces whose planes are fixed; ``painted`` hatches the cut faces.
+    """Cut the ``solids`` (by ``body/piece``) of pieces whose planes are fixed.
 
-    Raises UserError for one that is not closed.
+    ``painted`` hatches the cut faces. Raises UserError for one that is not closed.
     """
     reach = math.hypot(*spec.studio.centre) + BEYOND * spec.studio.radius
     for piece in spec.pieces:
@@ -128,7 +128,7 @@ def cut_in_passing(scene: Any, spec: Scene, solids: dict[str, Any], painted: boo
 
 
 def cut_tubes(scene: Any, spec: Scene, states: Sequence[State], tubes: Sequence[Any], painted: bool) -> None:
-    """Cut springs, ropes and belts, the ``tubes`` of a scene, as far as they are beyond their planes in any state."""
+    """Cut the ``tubes`` of a scene as far as they are beyond their planes in any state."""
     reach = math.hypot(*spec.studio.centre) + BEYOND * spec.studio.radius
     boxes: dict[SurfaceSpec, Any] = {}
     for k, (tube, thing) in enumerate(zip(spec.tubes, tubes, strict=True)):
@@ -193,7 +193,10 @@ def _box(scene: Any, name: str, planes: Sequence[Plane], reach: float, paints: l
 
 
 def _close(solid: Any, name: str) -> None:
-    """Weld corners that are one, as those of an STL may not be. Raises UserError if the solid is open nevertheless."""
+    """Weld corners that are one, as those of an STL may not be.
+
+    Raises UserError if the solid is open nevertheless.
+    """
     import bmesh
 
     mesh = bmesh.new()

@@ -197,7 +197,7 @@ def _worn(graph: Graph, most: float, grain: float) -> Any:
 
 
 def _anodised(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
-    """Return dyed oxide on blasted aluminium: coloured metal under a thin clear layer, bright on its chamfers."""
+    """Return dyed oxide on blasted aluminium: coloured metal under a clear layer, bright on its chamfers."""
     worn = _worn(graph, 0.42, grain)
     colour = _mixed(graph, worn, tuple(0.8 * c for c in surface.colour), BARE)
     return _principled(
@@ -247,7 +247,7 @@ def _plastic(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
 
 
 def _printed(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
-    """Return layers along z, each a round bead: light catches their crowns, and their tone varies a little."""
+    """Return layers along z, each a round bead: their crowns are bright, and their tone varies a little."""
     height = graph.add("SeparateXYZ", Vector=_place(graph, 1.0, 1.0)).outputs["Z"]
     layer = graph.math("DIVIDE", height, LAYER * grain)
     crown = graph.math("ABSOLUTE", graph.math("SINE", graph.math("MULTIPLY", layer, math.pi)))
@@ -350,7 +350,10 @@ def number(things: list[Any], inked: list[Any], radius: float) -> None:
 
 
 def _material(radius: float, strength: str | None) -> Any:
-    """Return the material of solids; with a ``strength``, of inked things: the attribute of that name, else 1."""
+    """Return the material of solids.
+
+    With a ``strength`` it is that of inked things: the attribute of that name, else 1.
+    """
     import bpy
 
     made = bpy.data.materials.new("coded")

@@ -28,7 +28,7 @@ LEVEL = 0.999
 
 
 def mark_chamfers(mesh: Any) -> None:
-    """Set the attribute EDGE to 1 on chamfers: faces that slope between top and wall and end at a sharp edge."""
+    """Set the attribute EDGE to 1 on chamfers, which slope between top and wall and end at a sharp edge."""
     sharp = np.zeros(len(mesh.edges), bool)
     mesh.attributes["sharp_edge"].data.foreach_get("value", sharp)
     edges = np.empty(len(mesh.loops), np.int32)
@@ -52,8 +52,7 @@ def engraved(mesh: Any) -> Array:
 
 
 def sunk(heights: Array, up: Array, areas: Array) -> Array:
-    """Return (n,) True for each triangle that is the floor or a wall of what is cut a little into the largest level
-    face.
+    """Return (n,) True for triangles of what is cut a little into the largest level face: floors and walls.
 
     ``heights`` (n, 3) are those of the corners (m), ``up`` (n,) those of the unit normals.
     """
@@ -115,7 +114,7 @@ def build_pieces(
     only_flat: dict[str, Colour] | None = None,
     solids: dict[str, Any] | None = None,
 ) -> dict[str, Any]:
-    """Load every piece; returns the empties that carry them: of bodies, and of pieces that turn against theirs.
+    """Load every piece; return the empties of bodies and of pieces that turn against theirs.
 
     ``radius`` is that of the swept motion (m). The pieces themselves are put into ``solids``, by ``body/piece``.
 

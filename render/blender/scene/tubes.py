@@ -19,7 +19,10 @@ SIDES = 16
 
 
 def build_tube(scene: Any, spec: TubeSpec, radius: float) -> Any:
-    """Return the tube, whose vertices :func:`place_tube` moves; its ends are flat. ``radius`` is the motion's (m)."""
+    """Return the tube with flat ends, whose vertices :func:`place_tube` moves.
+
+    ``radius`` is the motion's (m).
+    """
     import bpy
 
     mesh = bpy.data.meshes.new(spec.name)
@@ -35,8 +38,9 @@ def build_tube(scene: Any, spec: TubeSpec, radius: float) -> Any:
 
 
 def tube_vertices(path: list[Point], radius: float) -> np.ndarray:
-    """Return vertices (points * SIDES, 3), float32, of the tube along ``path``; rings turn with the path and no
-    more. All are at one point if ``path`` is: there is no tube.
+    """Return vertices (points * SIDES, 3), float32, of the tube along ``path``.
+
+    Rings turn with the path and no more. All are at one point if ``path`` is: there is no tube.
     """
     line = np.asarray(path)
     if not np.ptp(line, axis=0).any():
@@ -107,7 +111,7 @@ def build_trail(scene: Any, trail: TrailSpec) -> Any:
 
 
 def trail_vertices(path: list[Point], radius: float) -> np.ndarray:
-    """Return vertices ((CAP + rings) * SIDES, 3), float32, of the tube along ``path``, from the point backwards."""
+    """Return vertices ((CAP + rings) * SIDES, 3), float32, of the tube along ``path``, last point first."""
     line = np.asarray(path)
     along = np.gradient(line[:, :2], axis=0)
     length = np.linalg.norm(along, axis=1, keepdims=True)

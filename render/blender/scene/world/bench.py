@@ -99,9 +99,10 @@ VICE_LIGHT = 0.04
 
 
 def build_vice(thing: Thing, lamps: Sequence[Lamp], scale: float = 1.0) -> None:
-    """Build a vice on the floor at the origin of ``thing``, its screw towards -y; 0.5 wide, 0.45 high at scale 1.
+    """Build a vice on the floor at the origin of ``thing``, its screw towards -y.
 
-    ``lamps`` are in the axes of ``thing``; their light is painted on it (lights.py).
+    It is 0.5 wide and 0.45 high at scale 1. ``lamps`` are in the axes of ``thing``; their light is painted on it, as
+    lights.py has it.
     """
     middle = (0.0, 0.0, 0.25 * scale * thing.radius)
     enamel = painted("enamel", ENAMEL, lamps, middle, VICE_LIGHT, Shine(0.9, 20.0))
@@ -154,11 +155,10 @@ TOOL_LIGHT = 0.12
 def build_pegboard(
     thing: Thing, colour: Colour, away: float, clear: float, bounce: float, lamps: Sequence[Lamp]
 ) -> None:
-    """Build the wall at y = ``away`` from the floor up, the origin of ``thing`` at the floor; tools hang beside
-    ``clear``.
+    """Build the wall at y = ``away``, with the origin of ``thing`` at the floor.
 
-    Only the eye sees the tools, so far off their light is not missed; that of ``lamps``, in the axes of ``thing``, is
-    painted on them: rays from them took a tenth of a frame. ``bounce``: see Light in render/looks.py.
+    Tools hang beside ``clear``. Only the eye sees the tools, so far off their light is not missed; that of ``lamps``, in
+    the axes of ``thing``, is painted on them: rays from them took a tenth of a frame. ``bounce``: see Light in render/looks.py.
     """
     board = _board(colour, thing.radius, bounce)
     thing.box((-WIDE, away, 0.10), (WIDE, away + 0.05, HIGH), board, 0.0)

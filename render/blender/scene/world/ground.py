@@ -24,8 +24,10 @@ LANE = 1.55
 
 
 def paint(ground: Ground, radius: float, haze: Colour | None = None, bounce: float = 0.0) -> Any:
-    """Return the material of a ground around the origin of its object; it fades into ``haze`` far away. ``bounce``: see
-    Light in render/looks.py.
+    """Return the material of a ground around the origin of its object; it fades into ``haze`` far away.
+
+    ``bounce``: see Light in render/looks.py.
+
     """
     import bpy
 
@@ -44,7 +46,10 @@ def paint(ground: Ground, radius: float, haze: Colour | None = None, bounce: flo
 
 
 def _seen_only(graph: Graph, shader: Any, ground: Ground, bounce: float) -> Any:
-    """Return the texture for the eye; light that bounces meets the colour between its two: half the time of a frame."""
+    """Return the texture for the eye.
+
+    Light that bounces meets the colour between its two: half the time of a frame.
+    """
     middle: Colour = tuple((a + b) / 2 for a, b in zip(ground.colour, ground.other, strict=True))  # pyright: ignore[reportAssignmentType]
     plain = graph.add("BsdfDiffuse", Color=middle).outputs[0]
     if bounce > 0.0:
@@ -53,13 +58,18 @@ def _seen_only(graph: Graph, shader: Any, ground: Ground, bounce: float) -> Any:
 
 
 def glow(graph: Graph, colour: Colour, bounce: float) -> Any:
-    """Return the glow that bounced light meets instead of a bright surface: a tenth of the time of a frame."""
+    """Return the glow that bounced light meets instead of a bright surface.
+
+    It saves a tenth of the time of a frame.
+    """
     return graph.add("Emission", Color=colour, Strength=bounce).outputs[0]
 
 
 def _hazed(graph: Graph, shader: Any, haze: Colour, radius: float) -> Any:
-    """Return a shader with haze, as the eye sees it from far; light that falls on it and what it reflects stay as they
-    are.
+    """Return a shader with haze, as the eye sees it from far.
+
+    Light that falls on it and what it reflects stay as they are.
+
     """
     away = graph.math("DIVIDE", graph.add("CameraData").outputs["View Distance"], radius)
     part = graph.add(

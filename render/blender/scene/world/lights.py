@@ -56,9 +56,7 @@ class Shine(NamedTuple):
 def painted(
     name: str, colour: Colour, lamps: Sequence[Lamp], at: Vector3, ambient: float, shine: Shine | None = None
 ) -> Any:
-    """Return a material of a matt ``colour`` under ``lamps`` as seen from ``at``, and ``ambient`` light from all
-    around.
-    """
+    """Return a matt ``colour`` under ``lamps`` as seen from ``at``, and ``ambient`` light from all around."""
     made, graph = new_material(name)
     made.cycles.emission_sampling = "NONE"
     coordinates = graph.add("TexCoord")
@@ -218,7 +216,7 @@ def _window(scene: Any, studio: StudioSpec, toward: Any) -> Any:
 
 
 def _fade_to_rim(light: Any) -> None:
-    """Fade from a bright lower edge to nothing at the upper: far level faces catch more of it than near ones."""
+    """Fade from a bright lower edge to nothing: far level faces catch more of it than near ones."""
     light.use_nodes = True
     graph = Graph(light.node_tree).clear()
     across = graph.add("SeparateXYZ", Vector=graph.add("NewGeometry").outputs["Parametric"])

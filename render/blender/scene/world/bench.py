@@ -157,8 +157,9 @@ def build_pegboard(
 ) -> None:
     """Build the wall at y = ``away``, with the origin of ``thing`` at the floor.
 
-    Tools hang beside ``clear``. Only the eye sees the tools, so far off their light is not missed; that of ``lamps``, in
-    the axes of ``thing``, is painted on them: rays from them took a tenth of a frame. ``bounce``: see Light in render/looks.py.
+    Tools hang beside ``clear``. Only the eye sees the tools, so far off their light is not missed. That of ``lamps``,
+    in the axes of ``thing``, is painted on them: rays from them took a tenth of a frame. ``bounce``: see Light in
+    render/looks.py.
     """
     board = _board(colour, thing.radius, bounce)
     thing.box((-WIDE, away, 0.10), (WIDE, away + 0.05, HIGH), board, 0.0)

@@ -44,7 +44,7 @@ AWAY = 2e-3
 """Part of the size by which a place is moved that must be possible: more than what radii may be rounded by."""
 TOLERANCE = 1e-9
 DOUBTFUL = "derivatives along this simulation"
-"""What a warning says of derivatives with few digits."""
+"""First words of the warning of derivatives with few digits."""
 HEALTHY = 0.02
 """Singularity margin above which nothing gives reason to refuse."""
 
@@ -202,7 +202,7 @@ def beside_its_own(
             derived, error = attempt(
                 lambda: m.sensitivities(of, to, times=times, simulate=is_free, tolerance=TOLERANCE)
             )
-        doubts.extend(str(one.message) for one in said if DOUBTFUL in str(one.message))
+        doubts.extend(str(warning.message) for warning in said if DOUBTFUL in str(warning.message))
         every = None if derived is None else np.stack([derived[label] for label in of], axis=1)
         return (None if every is None else asked.carried_back(every, words)), error
 

@@ -34,7 +34,7 @@ WEIGHTS = {
     "transmission": 0.75, "pressure_angle": 0.8, "power_sign": 0.8, "peak_cause": 0.7, "effort_peak": 0.6,
     "peak_weight": 0.6, "ripple": 0.6, "gas": 0.75, "whirl": 0.7, "rolls": 0.7, "bend": 0.6, "cusp": 0.7,
     "crossing": 0.6, "no_effort": 0.7, "energy_kept": 0.6, "stroke": 0.55, "period": 0.5, "even_return": 0.4,
-    "rhythm": 0.8, "returns": 0.8, "climbs": 0.8,
+    "cable": 0.8, "rhythm": 0.8, "returns": 0.8, "climbs": 0.8,
     "difference": 0.9, "slide": 0.8, "cosine": 0.9, "halves": 0.8,
     "reach": 0.4,
 }  # fmt: skip

@@ -33,6 +33,7 @@ def test_contacts_are_made_of_these_constraints() -> None:
         "linear",
         "turn",
         "radial",
+        "span",
         "gear",
         "curve",
         "curve_rolling",

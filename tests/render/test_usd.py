@@ -178,7 +178,8 @@ def test_belts_and_chains_run_as_in_the_glb(out_root: Path, teeth: tuple[int, in
     belt, poses = filmed(drive(teeth=teeth))
     no: list[Any] = []
     film: Any = SimpleNamespace(
-        motion=poses.motion, poses=poses, belts=[belt], stretched=no, spirals=no, parts=SimpleNamespace(mount=Mount()),
+        motion=poses.motion, poses=poses, belts=[belt], cables=no, stretched=no, spirals=no,
+        parts=SimpleNamespace(mount=Mount()),
         scene=SimpleNamespace(pieces=no), cut=(), rollers=SimpleNamespace(found=no),
     )  # fmt: skip
     names = same_as_glb(film, out_root)

@@ -22,6 +22,7 @@ import numpy as np
 from mbsd import Mechanism
 from mbsd.arrays.curve_branches import CurveBranches
 from mbsd.base.errors import MechanismError
+from mbsd.model.joint import SPECIALS
 from mbsd.model.laws.function import Function
 from mbsd.model.mechanism import Start, StartVelocity
 from mbsd.numbers.names import known_numbers, number_named, with_values
@@ -149,13 +150,18 @@ class Asked:
         return [(own, units, column, of) for own, units in rows if all(units) for column, of in numbers]
 
 
+def rolls(m: Mechanism, joint: str) -> bool:
+    """Return True for wheels, whose start angles nothing decides: they are other ones in a world that is turned."""
+    return any(name in SPECIALS and SPECIALS[name].phased for name in m.joints[joint].kind.constraints)
+
+
 def asked_of(m: Mechanism, rng: np.random.Generator) -> Asked | None:
     """Some bodies, places of joints and masses; None where no joint has a place."""
     things = {*m.bodies, *m.traces, *m.drivers, *m.forces, *m.contacts}
     joints = [
         name
         for name in m.joints
-        if name not in things and {"x", "y"} <= set(known_numbers(m, name)) and "." not in name
+        if name not in things and {"x", "y"} <= set(known_numbers(m, name)) and "." not in name and not rolls(m, name)
     ]
     bodies = [name for name in m.bodies if name not in {"ground", *m.joints, *m.traces, *m.drivers, *m.forces}]
     if not joints or not bodies:

@@ -30,6 +30,8 @@ DIMENSIONS: dict[str, dict[str, Dimension]] = {
     "angle_lock": {},
     "gear_pair": {"radius_i": LENGTH, "radius_j": LENGTH, "module": LENGTH, "teeth": RATIO, "phase": RATIO},
     "belt": {"radius_i": LENGTH, "radius_j": LENGTH, "phase": RATIO},
+    "cable_span": {"radius_i": LENGTH, "radius_j": LENGTH},
+    "slack_span": {"radius_i": LENGTH, "radius_j": LENGTH, "slack": LENGTH, "restitution": RATIO},
     "rolling_disc": {"radius": LENGTH, "phase": RATIO},
     "drive_angle": {},
     "drive_relative_angle": {},
@@ -50,6 +52,7 @@ ANGULAR = {"torque", "drive_angle", "drive_relative_angle"}
 MIRRORED = {
     "revolute", "weld", "prismatic", "pin_in_slot", "distance", "angle_lock", "gear_pair", "belt", "bushing", "spring",
     "torsion_spring", "force", "drive_coordinate", "drive_distance", "gravitation", "rope", "rigid_discs", "gas_cycle",
+    "cable_span", "slack_span",
 } | ANGULAR  # fmt: skip
 """Kinds that have no side of their own, as the upper one of a line."""
 
@@ -64,8 +67,8 @@ def mirrored(m: Mechanism) -> Mechanism | None:
 
     def entry_of(entry: Any) -> Any:
         params = {key: _negative(value) if key in TURNED else value for key, value in entry.params.items()}
-        if "clockwise" in params:
-            params["clockwise"] = not params["clockwise"]
+        for key in params.keys() & {"clockwise", "clockwise_i", "clockwise_j"}:
+            params[key] = not params[key]
         if entry.kind.name == "revolute" and params.get("limits") is not None:
             low, high = params["limits"]
             params["limits"] = _negative(high), _negative(low)

@@ -360,7 +360,10 @@ def climbs(seen: Seen) -> Iterator[Insight]:
         return
     first = again[: int(np.argmax(np.append(np.diff(again) > 1, True))) + 1]
     k = int(first[kinetic[first].argmin()])
-    share = (float(height[k]) - float(height[:k].min())) / (float(height[0]) - float(height[:k].min()))
+    low = float(height[:k].min())
+    if height[0] <= low:
+        return
+    share = (float(height[k]) - low) / (float(height[0]) - low)
     template = "climbs_back" if share > 1 - STANDS else "climbs"
     yield insight(
         "climbs", share, "", seen.moment_of(k), 0.5 if share > 1 - STANDS else 0.9, template,

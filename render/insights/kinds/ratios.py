@@ -9,6 +9,7 @@ import numpy as np
 
 from render.insights.insight import Insight
 from render.insights.seen import TURN, Array, Output, Seen, amount, body, insight, load, point
+from shared.contract import ContactMotion, JointMotion
 
 HELD = 1e-6
 """Part by which a ratio may change that is held."""
@@ -23,6 +24,7 @@ def ratios(seen: Seen) -> Iterator[Insight]:
         yield from changing_ratio(seen, output)
     yield from difference(seen)
     yield from scale(seen)
+    yield from tackle(seen)
 
 
 def speed_ratio(seen: Seen) -> Iterator[Insight]:
@@ -153,3 +155,28 @@ def scale(seen: Seen) -> Iterator[Insight]:
             "scale", ratio, "", (float(seen.time[0]), float(seen.time[-1])), 0.9, bodies=(), joints=(small, large),
             small=point(small), large=point(large), ratio=amount(ratio, "times"),
         )  # fmt: skip
+
+
+def tackle(seen: Seen) -> Iterator[Insight]:
+    """Yield what cables do: how much farther one thing slides than another, and how hard their strands pull."""
+    connections: dict[str, JointMotion | ContactMotion] = {**seen.motion.joints, **seen.motion.contacts}
+    spans = {name: each for name, each in connections.items() if each.shape is not None and each.shape.clockwise}
+    if not spans:
+        return
+    whole = (float(seen.time[0]), float(seen.time[-1]))
+    for pair in combinations([each for each in seen.outputs if each.slides], 2):
+        farther, nearer = sorted(pair, key=lambda each: -each.travel)
+        ratio = held_ratio(farther.rate, nearer.rate)
+        if ratio is not None and abs(abs(ratio) - 1) > HELD:
+            yield insight(
+                "speed_ratio", abs(ratio), "", whole, 0.9, "slides_farther", bodies=(farther.body, nearer.body),
+                body=body(farther.body), other=body(nearer.body), factor=amount(abs(ratio), "times", 4),
+            )  # fmt: skip
+    pulls = {name: np.hypot(each.fx, each.fy) for name, each in spans.items()}
+    most = max(pulls, key=lambda name: float(pulls[name].max()))
+    least = min(pulls, key=lambda name: float(pulls[name].min()))
+    k = int(pulls[most].argmax())
+    yield insight(
+        "cable", float(pulls[most][k]), "N", seen.moment_of(k), 0.4, joints=(most,), cable=load(most),
+        most=amount(pulls[most][k], "N"), least=amount(pulls[least].min(), "N"), at=amount(seen.time[k], "s"),
+    )  # fmt: skip

@@ -156,7 +156,7 @@ class Pictures:
     def key(self, frame: int) -> str:
         """Return the name of the picture a frame shows."""
         key = frame_key(self.scene, self._shutter(frame))
-        which = self.plates.of_frame.get(frame)
+        which = self.plates.of_frame.get(frame % self.count)
         return key if which is None else hash_of([key, self.plates.plates[which].trial])[:32]
 
     @cached_property

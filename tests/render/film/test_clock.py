@@ -197,7 +197,7 @@ def test_held_frames_are_one_picture_and_showings_share_all(out_root: Path) -> N
 
 
 class _Store:
-    folder = Path("frames")
+    folder, plates = Path("frames"), Path("frames/plates")
 
 
 def test_the_swept_space_holds_the_whole_motion(out_root: Path) -> None:

@@ -131,10 +131,8 @@ def _planned(
 
     They are kept for the next call, so nobody writes into them.
     """
-    kept_rows, row_body = (
-        np.frombuffer(rows_bytes, np.int64),
-        np.frombuffer(bodies_bytes, np.int64).reshape(bodies_shape),
-    )
+    kept_rows = np.frombuffer(rows_bytes, np.int64)
+    row_body = np.frombuffer(bodies_bytes, np.int64).reshape(bodies_shape)
     n = len(kept_rows)
     own, constant = (np.frombuffer(part, bool).reshape(n, n) for part in (own_bytes, constant_bytes))
     value, constant = np.frombuffer(value_bytes).reshape(n, n).copy(), constant.copy()
@@ -189,11 +187,6 @@ def _planned(
         lower += [(slot[int(i), c], at_row[int(i)], at_row[r]) for i in targets]
         upper += [(slot[r, int(j)], at_row[r], at_column[int(j)]) for j in others]
         update += [(slot[int(i), int(j)], slot[int(i), c], slot[r, int(j)]) for i in targets for j in others]
-    size = int(open_rows.sum())
-    block = np.zeros((size, size), INDEX)
-    for a, r in enumerate(left_rows):
-        for b, c in enumerate(left_columns):
-            block[a, b] = slot.get((int(r), int(c)), 0)
     sequence = Elimination(
         rows=np.array(kept_rows, INDEX)[np.array(row_order, INDEX)],
         columns=np.array(column_order, INDEX) + 3,
@@ -204,7 +197,7 @@ def _planned(
         update=_triples(update),
         lower=_triples(lower),
         upper=_triples(upper),
-        block=block,
+        block=_block(slot, left_rows, left_columns),
         ends=np.flatnonzero(np.diff(row_part[left_rows], append=-1)) + 1,
     )
     return sequence, values
@@ -240,6 +233,15 @@ def irreducible_parts(pattern: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _by_part(chosen: np.ndarray, part: np.ndarray) -> np.ndarray:
     indices = np.flatnonzero(chosen)
     return indices[np.argsort(part[indices], kind="stable")]
+
+
+def _block(slot: dict[tuple[int, int], int], rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """Return the slots of the square that is left, 0 where it is zero."""
+    block = np.zeros((len(rows), len(columns)), INDEX)
+    for a, r in enumerate(rows):
+        for b, c in enumerate(columns):
+            block[a, b] = slot.get((int(r), int(c)), 0)
+    return block
 
 
 def _triples(rows: list) -> np.ndarray:

@@ -184,6 +184,20 @@ def _predict(motion, k, pose):
 
 
 @internal
+def _begin(motion, ws, k, h, pose):
+    """Fill pose and guessed turns of step k from those before; of the first step from what is given."""
+    if k == 0:
+        for c in range(pose.shape[0]):
+            pose[c] = motion.q[0, c]
+        for n in range(ws.guess.shape[0]):
+            ws.guess[n] = motion.turn[0, n]
+        return
+    _predict(motion, k, pose)
+    for n in range(ws.guess.shape[0]):
+        ws.guess[n] = motion.turn[k - 1, n] + h * motion.turn_rate[k - 1, n]
+
+
+@internal
 def _balance(system, laws, seq, fac, ws, motion, k):
     """Fill multipliers and wrenches of step k."""
     find_loads(system, motion.v[k], motion.a[k], ws, ws.load)
@@ -215,16 +229,8 @@ def sweep(system, laws, seq, fac, ws, size, motion, start, chosen, part):
             for law in range(1, drives.shape[1]):
                 if jumps(drives[k, law], drives[k - 1, law], h, motion.stride[law]):
                     return BRANCH_DOUBT, k
-            _predict(motion, k, pose)
-            for n in range(ws.guess.shape[0]):
-                ws.guess[n] = motion.turn[k - 1, n] + h * motion.turn_rate[k - 1, n]
-        else:
-            for c in range(q.shape[1]):
-                pose[c] = q[0, c]
-            for n in range(ws.guess.shape[0]):
-                ws.guess[n] = motion.turn[0, n]
-        first = 0.0
-        second = 0.0
+        _begin(motion, ws, k, h, pose)
+        first = second = 0.0
         last = np.inf
         change = np.inf
         margin = 0.0

@@ -69,9 +69,9 @@ class Cable(Feature):
         frame = f"cable {self.force}"
         layout.poses.setdefault(frame, np.zeros((len(layout.times), 3)))
         for span in self.spans:
-            centres = [layout.seen(marker.body.name, layout.place(marker), "ground") for marker in (span.i, span.j)]
+            start, end = (layout.seen(m.body.name, layout.place(m), "ground") for m in (span.i, span.j))
             first, second = (layout.sizes.of_metres(radius) for radius in signed_radii(span.params))
-            path = span_ends(*centres, (first, second))
+            path = span_ends(start, end, (first, second))
             shape = Rounded(path, 2 * BELT)
             yield Item(self.names[0], frame, shape, Reach((self.layer,)), source=self, meshes=touches)
 

@@ -21,7 +21,7 @@ WEIGHTS = {
     2: np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12.0,
     -2: np.array([3.0, -16.0, 36.0, -48.0, 25.0]) / 12.0,
 }
-"""Of their values in the slope, for a distance of 1 between them."""
+"""Weights of their values in the slope, for a distance of 1 between them."""
 SUDDEN = 100.0
 """Largest acceleration, as part of the mean, beyond which a motion is taken to pass a toggle."""
 ABOVE = 3.0
@@ -39,8 +39,8 @@ class Beside:
     passing: np.ndarray
     """(T,) whether the motion passes a toggle."""
 
-    def take(self, at: slice) -> Beside:
-        """Return those beside some of the times."""
+    def sliced(self, at: slice) -> Beside:
+        """Return the moments beside some of the times."""
         return Beside(self.times[:, at], self.weights[:, at], self.passing[at])
 
 
@@ -63,8 +63,8 @@ def moments_beside(t: np.ndarray, nodes: np.ndarray, passing: np.ndarray) -> Bes
     return Beside(times, weights, passing)
 
 
-def passing_toggles(t: np.ndarray, a: np.ndarray) -> np.ndarray:
-    """(T,) whether accelerations a (T, n) at times t (T,) (s) are those of a toggle: nowhere if none are sudden."""
+def find_toggles(t: np.ndarray, a: np.ndarray) -> np.ndarray:
+    """Return at which times t (T,) (s) accelerations a (T, n) are those of a toggle: nowhere if none are sudden."""
     size = np.linalg.norm(a, axis=1)
     mean = np.trapezoid(size, t) / (t[-1] - t[0])
     return (size > ABOVE * mean) & (size.max(initial=0.0) > SUDDEN * mean)

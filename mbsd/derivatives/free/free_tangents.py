@@ -64,7 +64,7 @@ class Stretch:
     autonomous: bool = False
     """True if time itself changes nothing, so that the motion's own rates are one of its changes."""
     passing: np.ndarray | None = None
-    """(T,) whether the motion passes a toggle, by ``passing_toggles``; None is nowhere."""
+    """(T,) whether the motion passes a toggle, by ``find_toggles``; None is nowhere."""
     solved: bool = True
     """True if accelerations and multipliers are known; else accelerations are estimates."""
     own: Left | None = None
@@ -202,7 +202,7 @@ class _Piece:
         self.free = np.ascontiguousarray(inverse[:, :, len(self.rows) :])
         self.f, self.n = len(basis), inverse.shape[1]
         self.autonomous = whole.autonomous
-        self.beside = None if whole.beside is None else whole.beside.take(at)
+        self.beside = None if whole.beside is None else whole.beside.sliced(at)
         self.inertia, self._scale = self.terms.inertia[3:], 1.0 / whole.scale
         self.reach = self._reaches()
         self.effort = self._efforts(whole)
@@ -349,7 +349,7 @@ class _Piece:
             own = self.own.each(lambda part: part[:, at])
         else:
             own = by_numbers(self.terms, self.along.take(at), self.every, self.compact[at])
-        return own if self.beside is None else stacked([own, self._by_time(self.beside.take(at), at)], np.concatenate)
+        return own if self.beside is None else stacked([own, self._by_time(self.beside.sliced(at), at)], np.concatenate)
 
     def _by_time(self, beside: Beside, at: slice) -> Left:
         """(1, T, ...) how the equations change with time itself at some nodes of the held motion."""

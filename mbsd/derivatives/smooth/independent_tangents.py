@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from mbsd.derivatives.free.explicit_time import moments_beside, passing_toggles
+from mbsd.derivatives.free.explicit_time import find_toggles, moments_beside
 from mbsd.derivatives.free.free_tangents import REACH, Stretch, Tangents, at_rows, slight_changes
 from mbsd.derivatives.free.linear_motion import ByTime, Carried, carried
 from mbsd.derivatives.numbers.terms import Along, Terms
@@ -118,7 +118,7 @@ class IndependentTangents:
         y = np.concatenate([self.basis @ self.both.begun(part).T for part in range(2)])
         fastest = float(np.abs(speed).max(initial=0.0)) or 1.0
         slight = slight_changes(f, fastest, np.array(self.both.sizes))
-        itself, by_time, passing = None, None, passing_toggles(t, rates[:, 0])
+        itself, by_time, passing = None, None, find_toggles(t, rates[:, 0])
         if self.autonomous or passing.any():
             itself = np.concatenate([speed, rates[:, 0]], axis=1)
         if passing.any() and not self.autonomous:

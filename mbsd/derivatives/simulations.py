@@ -16,6 +16,7 @@ from mbsd.arrays.packing import Packed
 from mbsd.base.errors import SimulationError
 from mbsd.derivatives.driven.sweeps import displaced, extent
 from mbsd.derivatives.driven.tangents import Tangent, by_numbers, has_kinks
+from mbsd.derivatives.free.explicit_time import find_toggles
 from mbsd.derivatives.free.free_tangents import AT_ONCE, FreeTangents, Stretch, Tangents, joined
 from mbsd.derivatives.free.guards import End, contacts_of, refuse_contact_at_start, unshared, ways_of
 from mbsd.derivatives.free.indexing import held_between, solve_ends, unwatched
@@ -254,7 +255,7 @@ class SimulationTangents:
         errors: list[np.ndarray] = []
         noise: list[float] = []
         self.ends, self._off = None, 0.0
-        autonomous = self._is_autonomous(along)
+        autonomous, passing = self._is_autonomous(along), find_toggles(along.t, along.a)
         compact = self.terms.rows(along)[2]
         shared = self._unshare(along, compact, edges)
         held = [held_between(self.terms, self.variants, along.take(slice(a, b))) for a, b in pairwise(edges)]
@@ -266,7 +267,7 @@ class SimulationTangents:
         for k, (a, b) in enumerate(pairwise(edges)):
             at, ends = slice(a, b), None
             stretch = self._stretch(along.take(at), compact[at], asked[at], known[at])
-            stretch.solved, stretch.autonomous = whole.solution is not None, autonomous
+            stretch.solved, stretch.autonomous, stretch.passing = whole.solution is not None, autonomous, passing[at]
             if changes is not None and whole.solution is not None:
                 own, ends = next(changes)
                 stretch.own = own if held[k][0] is self.terms else None

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from scipy.integrate import solve_ivp
 
+from mbsd.derivatives.free.explicit_time import find_toggles, moments_beside
 from mbsd.derivatives.free.linear_motion import NODES, PLACES, carried, own_rates
 from mbsd.derivatives.free.mesh import first_edges, longest_steps, looked_at, nodes_of, refined
 
@@ -158,3 +160,23 @@ def test_an_event_is_an_edge_and_steps_come_closer_where_errors_are() -> None:
     assert finer.tolist() == [0.0, 1.0, 1.25, 1.5, 1.75, 2.0]
     finer = refined(np.array([0.0, 1.0, 2.0]), np.array([[1e-9, 9e-6], [1e-9, 1.1e-5]]), 1e-5)
     assert finer.tolist() == [0.0, 1.0, 1.5, 2.0]
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-4, 1e-7])
+def test_moments_beside_nodes_tell_slopes_from_within_the_stretch(scale: float) -> None:
+    """Of steps that are ``scale`` s long, a while after 0."""
+    t = 0.3 + scale * (np.arange(3)[:, None] + PLACES[None, :-1]).ravel()
+    t = np.append(t, 0.3 + 3.0 * scale)
+    beside = moments_beside(t, t, np.ones(len(t), bool))
+    assert (beside.times >= t[0]).all()
+    assert (beside.times <= t[-1]).all()
+    slope = (beside.weights * np.sin((beside.times - 0.3) / scale)).sum(axis=0) * scale
+    assert np.allclose(slope, np.cos((t - 0.3) / scale), rtol=0.0, atol=max(1e-6, 1e-16 / scale * 1e3))
+
+
+def test_toggles_are_where_accelerations_are_sudden() -> None:
+    t = np.concatenate([np.linspace(0.0, 0.499, 100), np.linspace(0.4999, 0.5001, 21), np.linspace(0.501, 1.0, 100)])
+    a = np.sin(t)[:, None] * [1.0, 2.0]
+    assert not find_toggles(t, a).any()
+    a[110, 1] = 1e4
+    assert find_toggles(t, a).nonzero()[0].tolist() == [110]

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 import mbsd
 from mbsd.derivatives import simulations
+from mbsd.derivatives.free import explicit_time
 from mbsd.numbers.names import number_named, with_values
 
 OF = ["b.theta", "b.omega", "c.omega"]
+Law = Any
+"""Of a torque: a motion, or a function of time."""
 
 
 def flat(start: float, speed: float) -> mbsd.Mechanism:
@@ -70,17 +75,29 @@ def test_masses_too_far_apart_are_refused_in_words() -> None:
     assert np.isfinite(hung(1e4).sensitivities("b.theta", "B.x", 0.2, 4)["b.theta"]).all()
 
 
-def whip(wheel: float = 5e5, speed: float = 0.4, rod: float = 0.45, wind: float = 0.0) -> mbsd.Mechanism:
-    """A flywheel of ``wheel`` kg that light links stop at their toggle, within sqrt(1 / wheel) rad or so."""
+def whip(
+    wheel: float = 5e5, speed: float = 0.4, rod: float = 0.45, wind: Law | None = None, cam: mbsd.Motion | None = None
+) -> mbsd.Mechanism:
+    """A flywheel of ``wheel`` kg that light links stop at their toggle, within sqrt(1 / wheel) rad or so.
+
+    ``wind`` turns the crank; ``cam`` drives a cam on which it stands a little off the middle.
+    """
     m = mbsd.Mechanism("whip", gravity=(0.0, -9.81))
     crank, link = m.body("crank", 1.4, (0.13, 0.02), 0.014), m.body("rod", rod, (0.32, -0.07), 0.06)
     flywheel = m.body("flywheel", wheel, (0.2, 0.0), 0.07 * wheel)
-    m.revolute("O", m.ground.at(0.432, -0.229), crank.origin)
+    frame = m.ground.at(0.432, -0.229)
+    if cam:
+        turned = m.body("cam", 10.0, (0.0, 0.0), 1.0)
+        m.revolute("E", m.ground.at(0.432, -0.229), turned.origin)
+        m.drive_angle("motor", turned, cam)
+        m.start_near(cam=(0.432, -0.229, 0.0))
+        frame = turned.at(0.01, 0.0)
+    m.revolute("O", frame, crank.origin)
     m.revolute("A", crank.at(0.2926, 0.0), link.origin)
     m.revolute("B", link.at(0.7406, 0.0), flywheel.origin)
     m.revolute("C", m.ground.at(0.5724, 0.4684), flywheel.at(0.5834, 0.0))
     if wind:
-        m.torque("wind", crank, mbsd.harmonic(wind, 7.0))
+        m.torque("wind", crank, wind)
     m.start_near(crank=(0.432, -0.229, 124.47), rod=(0.266, 0.0119, 4.97), flywheel=(1.004, 0.076, 137.7))
     m.start_moving(flywheel=speed)
     return m
@@ -130,6 +147,71 @@ def test_where_a_toggle_leaves_no_digits_that_is_said(wheel: float) -> None:
 
 
 def test_a_force_that_time_changes_is_no_motion_of_its_own() -> None:
-    m = whip(1e3, wind=20.0)
+    m = whip(1e3, wind=mbsd.harmonic(20.0, 7.0))
     assert by_place(m, 1e-10) == pytest.approx(by_differences(m, 1e-4), rel=1e-6)
     assert by_place(m, 1e-10) != pytest.approx(by_place(whip(1e3), 1e-10), rel=1e-3)
+
+
+@pytest.mark.filterwarnings("ignore:.*Masses are in kilograms")
+@pytest.mark.parametrize("wind", [mbsd.harmonic(20.0, 7.0), lambda t: 20.0 * np.sin(7.0 * t)])
+@pytest.mark.parametrize("wheel", [5e5, 1e7])
+def test_through_a_toggle_under_a_torque_of_time_they_keep_six_digits(wheel: float, wind: Law) -> None:
+    known = by_differences(whip(wheel, wind=wind), 1e-4)
+    for tolerance in (1e-9, 1e-11):
+        assert by_place(whip(wheel, wind=wind), tolerance) == pytest.approx(known, rel=3e-6)
+
+
+@pytest.mark.filterwarnings("ignore:.*Masses are in kilograms")
+@pytest.mark.parametrize("cam", [mbsd.constant_rate(3.0), mbsd.harmonic(0.5, 11.0)])
+def test_through_a_toggle_that_a_driver_moves_they_keep_seven_digits(cam: mbsd.Motion) -> None:
+    known = by_differences(whip(2e5, cam=cam), 1e-4)
+    for tolerance in (1e-10, 1e-11):
+        assert by_place(whip(2e5, cam=cam), tolerance) == pytest.approx(known, rel=2e-7)
+
+
+@pytest.mark.filterwarnings("ignore:.*Masses are in kilograms")
+def test_under_a_torque_of_time_a_toggle_that_leaves_no_digits_is_told() -> None:
+    with pytest.warns(mbsd.ModelWarning, match=r"whip: derivatives along this simulation .* differences of whole sim"):
+        by_place(whip(1e10, wind=mbsd.harmonic(20.0, 7.0)), 1e-9)
+
+
+def blown(driven: bool) -> mbsd.Mechanism:
+    """A four-bar with a pendulum on its coupler, driven or turned by torques of time."""
+    m = mbsd.Mechanism("blown", gravity=(0.0, -9.81))
+    a, b, c = m.bar("a", 0.1, mass=1.0), m.bar("b", 0.3, mass=1.0), m.bar("c", 0.2, mass=1.0)
+    hung = m.bar("hung", 0.2, mass=0.5)
+    m.revolute("A", m.ground.at(0, 0), a.start)
+    m.revolute("B", a.end, b.start)
+    m.revolute("C", b.end, c.end)
+    m.revolute("D", m.ground.at(0.25, 0.1), c.start)
+    m.revolute("P", b.at(0.15, 0.05), hung.start)
+    if driven:
+        m.drive_angle("motor", a, mbsd.harmonic(0.7, 11.0))
+    else:
+        m.torque("wind", a, mbsd.harmonic(2.0, 17.0))
+    m.torque("gusts", c, lambda t: 0.3 * np.sin(9.0 * t))
+    m.start_near(a=60, b=10, c=80, hung=-50)
+    return m
+
+
+@pytest.mark.filterwarnings("error:.*derivatives along this simulation")
+@pytest.mark.parametrize("way", ["_in_independent_coordinates", "_between_looks", "_at_nodes"])
+@pytest.mark.parametrize("driven", [False, True])
+def test_how_time_changes_a_motion_is_found_in_all_ways(
+    way: str, driven: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is not found of it would be noise, of which a warning tells."""
+    if way != "_in_independent_coordinates":
+        monkeypatch.setattr(simulations, "suits", lambda ready: None)
+    if way == "_at_nodes":
+        monkeypatch.setattr(simulations, "CLOSE", -1.0)
+
+    def slopes() -> np.ndarray:
+        of = "hung.omega"
+        return blown(driven).sensitivities(of, ["B.x", "hung.mass"], 0.5, 5, simulate=True, tolerance=1e-10)[of]
+
+    known = slopes()
+    monkeypatch.setattr(explicit_time, "SUDDEN", 0.0)
+    monkeypatch.setattr(explicit_time, "ABOVE", 0.0)
+    own = slopes()
+    assert np.allclose(own, known, rtol=0.0, atol=1e-7 * np.abs(known).max())

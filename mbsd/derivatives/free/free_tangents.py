@@ -22,6 +22,7 @@ from mbsd.derivatives.driven.tangents import (
     LOOSE,
     along_directions,
     by_numbers,
+    combined,
     differences,
     has_kinks,
     per_scales,
@@ -30,8 +31,9 @@ from mbsd.derivatives.driven.tangents import (
     steps_along,
 )
 from mbsd.derivatives.free.differentiated import Made, Nodes, Own, Scratch, differentiate
-from mbsd.derivatives.free.linear_motion import NODES, carried
-from mbsd.derivatives.numbers.terms import Along, Change, Left, Terms
+from mbsd.derivatives.free.explicit_time import Beside, moments_beside
+from mbsd.derivatives.free.linear_motion import NODES, ByTime, carried
+from mbsd.derivatives.numbers.terms import Along, Change, Left, Terms, stacked
 from mbsd.derivatives.numbers.variants import Variants
 
 REACH = 1e-5
@@ -61,6 +63,8 @@ class Stretch:
     """(T,) whether it is one of the nodes of whole steps, the first and the last among them."""
     autonomous: bool = False
     """True if time itself changes nothing, so that the motion's own rates are one of its changes."""
+    passing: np.ndarray | None = None
+    """(T,) whether the motion passes a toggle, by ``find_toggles``; None is nowhere."""
     solved: bool = True
     """True if accelerations and multipliers are known; else accelerations are estimates."""
     own: Left | None = None
@@ -123,7 +127,9 @@ class FreeTangents:
         self.terms, self.along, self.rows, self.every = terms, stretch.along, stretch.rows, every
         self.dependent, self.asked, self.compact = stretch.dependent, stretch.asked, stretch.compact
         self.nodes, self.solved, self.own = stretch.nodes, stretch.solved, stretch.own
-        self.autonomous = stretch.autonomous
+        self.autonomous, self.beside = stretch.autonomous, None
+        if stretch.passing is not None and stretch.passing.any() and not stretch.autonomous:
+            self.beside = moments_beside(self.along.t, self.along.t[self.nodes], stretch.passing)
         packed = terms.packed
         refuse_large(terms, len(self.along.t))
         self.scale = packed.column_scale()
@@ -196,6 +202,7 @@ class _Piece:
         self.free = np.ascontiguousarray(inverse[:, :, len(self.rows) :])
         self.f, self.n = len(basis), inverse.shape[1]
         self.autonomous = whole.autonomous
+        self.beside = None if whole.beside is None else whole.beside.sliced(at)
         self.inertia, self._scale = self.terms.inertia[3:], 1.0 / whole.scale
         self.reach = self._reaches()
         self.effort = self._efforts(whole)
@@ -242,20 +249,22 @@ class _Piece:
 
     def carry(self, q: np.ndarray, v: np.ndarray) -> Carried:
         """See :meth:`FreeTangents.carry`."""
-        last, asked = len(self.along.t) - 1, len(self.asked)
+        last, asked, numbers = len(self.along.t) - 1, len(self.asked), len(self.every)
         at = self.asked if asked and self.asked[-1] == last else np.append(self.asked, last)
         plain = self.effort is None and can_differentiate(self.terms)
-        made = self._node_by_node(q, at) if plain else self._in_arrays(q, at)
+        first = q if self.beside is None else np.concatenate([q, self.along.v[:1]])
+        made = self._node_by_node(first, at) if plain else self._in_arrays(first, at)
         begun = np.concatenate([self.basis @ q[:, 3:].T, self.basis @ v[:, 3:].T])
         nodes = self.nodes
         fastest = float(np.abs(self.along.v[:, 3:] * self._scale).max(initial=0.0)) or 1.0
         line = carried(
             self.along.t[nodes],
             made.matrix[nodes],
-            made.right[nodes],
+            made.right[nodes, :, :numbers],
             begun,
             slight_changes(self.f, fastest, np.array([variants.size for variants in self.every])),
-            itself=self._rates() if self.autonomous else None,
+            itself=self._rates() if self.autonomous or self.beside is not None else None,
+            by_time=None if self.beside is None else ByTime(made.right[nodes, :, numbers], self.beside.passing[nodes]),
         )
         y, parts = line.at(self.along.t[at]), [np.zeros((len(self.every), *part.shape[1:])) for part in made[2:]]
         for out, part in zip(parts, made[2:], strict=True):
@@ -307,8 +316,9 @@ class _Piece:
         There accelerations depend on multipliers in return, so that each node is one dense system of both. The kernel
         solves for accelerations first and multipliers then, and is several times as fast; so both routes stay.
         """
-        f, numbers, count = self.f, len(self.every), len(self.along.t)
+        f, count = self.f, len(self.along.t)
         own = self._own(slice(None))
+        numbers = len(own.load)
         position, some = self._opened(own, self._first(begun, own))
         positions, velocities = np.zeros((2, 2 * f + numbers, count, 3 + self.n))
         positions[:f, :, 3:] = velocities[f : 2 * f, :, 3:] = np.moveaxis(self.free, 2, 0)
@@ -334,10 +344,18 @@ class _Piece:
         )
 
     def _own(self, at: slice) -> Left:
-        """How the equations change with the numbers at some nodes of the held motion."""
+        """How the equations change with the numbers at some nodes of the held motion, and then, if asked, with time."""
         if self.own is not None:
-            return self.own.each(lambda part: part[:, at])
-        return by_numbers(self.terms, self.along.take(at), self.every, self.compact[at])
+            own = self.own.each(lambda part: part[:, at])
+        else:
+            own = by_numbers(self.terms, self.along.take(at), self.every, self.compact[at])
+        return own if self.beside is None else stacked([own, self._by_time(self.beside.sliced(at), at)], np.concatenate)
+
+    def _by_time(self, beside: Beside, at: slice) -> Left:
+        """(1, T, ...) how the equations change with time itself at some nodes of the held motion."""
+        along = self.along.take(at)
+        parts = [self.terms.left(replace(along, t=t)) for t in beside.times]
+        return combined(parts, beside.weights[..., None]).each(lambda part: part[None])
 
     def _first(self, begun: np.ndarray, own: Left) -> np.ndarray:
         """(P, 1, m) what J q' and the numbers leave open at the first node, q' being ``begun`` (P, 3 nb) there."""

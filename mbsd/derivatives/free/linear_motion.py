@@ -9,11 +9,13 @@ errors: where they fall as those of a smooth motion do, by the same factor from 
 on, the ninth is what the step leaves out inside, the fourteenth at its end. Both are parts of the largest y so far:
 what errs while y is small grows with it.
 
-Where time itself changes nothing, the rates u of the motion solve these equations, b apart: a motion that begins later
-by tau changes by tau u. A toggle makes u a million times as large within no time, and y with it; behind it little of y
-is left, in which errors of that moment remain. So what a step errs in u, which is known, is taken from y as well, for
-the part tau u of it that is nearest to y. The known u err by as much, and what that is to the rest y - tau u, or to the
-last y if this is more, is left as noise. Source: Hairer, Wanner, Solving ODEs II, IV.5.
+The rates u of the motion solve these equations, with how v' changes with time itself for b: a motion that begins later
+by tau, and all that time does with it, changes by tau u. A toggle makes u a million times as large within no time, and
+y with it; behind it little of y is left, in which errors of that moment remain. So what a step errs in u, which is
+known, is taken from y as well, for the part tau u of it that is nearest to y. The known u err by as much, and what that
+is to the rest y - tau u, or to the last y if this is more, is left as noise.
+
+Source: Hairer, Wanner, Solving ODEs II, IV.5.
 """
 
 from __future__ import annotations
@@ -123,35 +125,62 @@ def own_rates(matrix: np.ndarray, right: np.ndarray) -> OwnRates:
     return OwnRates(np.ascontiguousarray(matrix), np.ascontiguousarray(right), gain, square)
 
 
+class ByTime(NamedTuple):
+    """How a motion at 8 d + 1 nodes is changed by time itself."""
+
+    slope: np.ndarray
+    """(8 d + 1, k) how v' changes with time, q and v held."""
+    passing: np.ndarray
+    """(8 d + 1,) whether the motion passes a toggle: there alone steps are corrected."""
+
+
 def carried(
     t: np.ndarray, a: np.ndarray, b: np.ndarray, begun: np.ndarray, slight: np.ndarray,
-    kinematics: SameRates | OwnRates = SAME_RATES, itself: np.ndarray | None = None,
+    kinematics: SameRates | OwnRates = SAME_RATES, itself: np.ndarray | None = None, by_time: ByTime | None = None,
 ) -> Carried:  # fmt: skip
     """Return y at nodes t (8 d + 1,) (s) from ``begun`` (n + k, c), and beyond.
 
     a (8 d + 1, k, n + k), b (8 d + 1, k, c). Errors are parts of the largest y so far, or of ``slight`` (n + k, c)
-    if that is more. ``itself`` (8 d + 1, n + k): rates of the motion, where they solve y' = A y (see the file).
+    if that is more. ``itself`` (8 d + 1, n + k): rates of the motion, if they correct steps (see the file), with
+    ``by_time`` if time itself changes v'.
     """
     k, c = b.shape[1], begun.shape[1]
-    if itself is None:
-        itself = np.zeros((0, len(begun)))
+    steps = (len(t) - 1) // NODES
+    if itself is None or k == 0:
+        itself, passing = np.zeros((0, len(begun))), np.zeros(steps, bool)
     else:
-        b = np.append(b, np.zeros((len(t), k, 1)), axis=2)
+        own = np.zeros((len(t), k)) if by_time is None else by_time.slope
+        passing = _fast_steps(t, itself, k) if by_time is None else _steps_of(by_time.passing).any(axis=1)
+        b = np.append(b, own[..., None], axis=2)
+    corrected = passing.copy()
     out, rates = np.zeros((2, len(t), len(begun), b.shape[2]))
     out[0, :, :c] = begun
     matrix, side = np.zeros((NODES * k, NODES * k)), np.zeros((NODES * k, b.shape[2]))
-    taken = np.zeros(((len(t) - 1) // NODES, c, 2))
+    taken = np.zeros((steps, c, 2))
     a, b = np.ascontiguousarray(a), np.ascontiguousarray(b)
-    march(kinematics, t, a, b, WEIGHTS, itself, matrix, side, taken, out, rates)
+    march(kinematics, t, a, b, WEIGHTS, itself, corrected, matrix, side, taken, out, rates)
     if len(itself):
         out, rates = (np.ascontiguousarray(part[..., :c]) for part in (out, rates))
     largest = np.maximum.accumulate(np.abs(out), axis=0)[NODES::NODES]
     per = 1.0 / np.maximum(largest, slight)
-    errors = np.zeros(((len(t) - 1) // NODES, 2))
+    errors = np.zeros((steps, 2))
     estimate(t, rates, per, HALFWAY, LAST, errors)
     last = np.linalg.norm(np.maximum(np.abs(out[-1, -k:]), slight[-k:]), axis=0)
+    taken = taken[corrected if by_time is None else passing]
     noise = np.linalg.norm(taken[..., 0] / np.maximum(taken[..., 1], last), axis=0).max(initial=0.0)
     return Carried(t, out, rates, errors, float(noise))
+
+
+def _fast_steps(t: np.ndarray, itself: np.ndarray, k: int) -> np.ndarray:
+    """(d,) whether rates ``itself`` (8 d + 1, n + k) at the start of a step are fast enough to correct it."""
+    first, length = itself[:-1:NODES], np.diff(t[::NODES])
+    size = (first[:, -k:] ** 2).sum(axis=1) + (first[:, :-k] ** 2).sum(axis=1) / length**2
+    return size >= (SLOW * np.abs(itself[:, -k:]).max()) ** 2
+
+
+def _steps_of(values: np.ndarray) -> np.ndarray:
+    """(d, 9) values at nodes (8 d + 1,), step by step."""
+    return values[_nodes_of(np.arange((len(values) - 1) // NODES))]
 
 
 def _nodes_of(steps: np.ndarray) -> np.ndarray:
@@ -338,27 +367,27 @@ def _size(u, f, h):
 
 
 @internal
-def correct(itself, f, h, slow, y, taken):
+def correct(itself, f, h, y, taken):
     """Take from y (9, n + k, c + 1) at the nodes of a step what its last column errs in ``itself`` (9, n + k).
 
-    taken (c, 2): the size of what is taken at the end, and that of what is left beside tau u.
+    taken (c, 2): the size of what is taken at the end, and that of what is left beside tau u. Returns whether it errs
+    little enough; else nothing is taken.
     """
     coordinates = itself.shape[1] - f
     last = y.shape[2] - 1
-    size = _size(itself[0], f, h)
     for i in range(NODES + 1):
         for k in range(itself.shape[1]):
             y[i, k, last] -= itself[i, k]
     error = _size(y[NODES, :, last], f, h)
-    if size < slow or error > CONSISTENT * CONSISTENT * _size(itself[NODES], f, h):
-        return
+    size = _size(itself[0], f, h)
+    consistent = size > 0.0 and error <= CONSISTENT * CONSISTENT * _size(itself[NODES], f, h)
     for c in range(last):
         shift = 0.0
         for k in range(itself.shape[1]):
             shift += itself[0, k] * y[0, k, c] / (h * h if k < coordinates else 1.0)
-        shift /= size
+        shift /= max(size, 1e-300)
         rest = 0.0
-        for i in range(1, NODES + 1):
+        for i in range(1, NODES + 1 if consistent else 1):
             for k in range(itself.shape[1]):
                 y[i, k, c] -= shift * y[i, k, last]
         for k in range(itself.shape[1]):
@@ -366,22 +395,19 @@ def correct(itself, f, h, slow, y, taken):
             rest += part * part
         taken[c, 0] = abs(shift) * math.sqrt(error)
         taken[c, 1] = math.sqrt(rest)
+    return consistent
 
 
 @kernel
-def march(kinematics, t, a, b, weights, itself, matrix, side, taken, out, rates):
+def march(kinematics, t, a, b, weights, itself, corrected, matrix, side, taken, out, rates):
     """Fill out and rates (8 d + 1, n + k, c) from out[0], by ``weights`` (8, 9); matrix and side are scratch.
 
     a (8 d + 1, k, n + k), b (8 d + 1, k, c). Each step is solved for v at its nodes, of which q follows. Where there
     are rates of the motion, ``itself`` (8 d + 1, n + k), the last of the columns is theirs, and what is ``taken``
-    (d, c, 2) in steps is what ``correct`` gives.
+    (d, c, 2) in steps that are to be ``corrected`` (d,) is what ``correct`` gives; those that cannot be are left out.
     """
     f = b.shape[1]
     n = a.shape[2] - f
-    slow = 0.0
-    for i in range(itself.shape[0]):
-        for k in range(f):
-            slow = max(slow, SLOW * SLOW * itself[i, n + k] * itself[i, n + k])
     for first in range(0, t.shape[0] - 1, NODES):
         h = t[first + NODES] - t[first]
         own = slice(first, first + NODES + 1)
@@ -399,8 +425,8 @@ def march(kinematics, t, a, b, weights, itself, matrix, side, taken, out, rates)
                 for c in range(side.shape[1]):
                     node[n + k, c] = side[i * f + k, c]
             fill_coordinates(kinematics, h, weights, i, out[first], f, side, node)
-        if itself.shape[0] > 0:
-            correct(itself[own], f, h, slow, out[own], taken[first // NODES])
+        if corrected[first // NODES]:
+            corrected[first // NODES] = correct(itself[own], f, h, out[own], taken[first // NODES])
         for i in range(1, NODES + 1):
             rate_at(kinematics, first + i, a[first + i], b[first + i], out[first + i], rates[first + i])
 

@@ -131,7 +131,7 @@ def contrast(first: str, second: str) -> float:
 
 def shown(name: str) -> str:
     """How a page shows a picture."""
-    return f'srcset="{name_of(name)}">\n  <img alt='
+    return f'srcset="{name_of(name)}"><img alt='
 
 
 def test_each_analysis_has_a_page_with_a_picture_and_stands_in_the_index() -> None:

@@ -118,8 +118,9 @@ def test_no_label_covers_another(plot: str) -> None:
 
 def test_many_bodies_and_joints_stay_readable() -> None:
     bodies = {f"link_{i:02d}": MOTION.bodies["rocker"] for i in range(40)}
-    joints = {f"J{i:02d}": MOTION.joints["A"] for i in range(40)}
-    motion = msgspec.structs.replace(MOTION, bodies=bodies, joints=joints)
+    pins = {f"J{i:02d}": ("ground", name) for i, name in enumerate(bodies)}
+    joints = {name: msgspec.structs.replace(MOTION.joints["A"], bodies=pair, shape=None) for name, pair in pins.items()}
+    motion = msgspec.structs.replace(MOTION, bodies=bodies, joints=joints, drivers={}, points={})
     assert overlaps(figure("bodies", motion)) == []
     assert overlaps(figure("reactions", motion)) == []
     assert len([axes for axes in figure("hodographs", motion).axes if axes.get_visible()]) == 12
@@ -153,7 +154,8 @@ def test_words_of_neighbouring_marks_do_not_meet() -> None:
 
 def test_long_names_stay_on_the_page() -> None:
     names = ("a", "coupler_of_the_first_loop", "crank_of_the_engine")
-    motion = msgspec.structs.replace(MOTION, bodies=dict.fromkeys(names, MOTION.bodies["rocker"]))
+    bodies = MOTION.bodies | dict.fromkeys(names, MOTION.bodies["rocker"])
+    motion = msgspec.structs.replace(MOTION, bodies=bodies)
     drawn = figure("bodies", motion)
     drawn.canvas.draw()
     boxes = [text.get_window_extent() for axes in drawn.axes for text in axes.texts if text.get_text() in names]

@@ -164,7 +164,7 @@ def test_an_event_is_an_edge_and_steps_come_closer_where_errors_are() -> None:
 
 @pytest.mark.parametrize("scale", [1.0, 1e-4, 1e-7])
 def test_moments_beside_nodes_tell_slopes_from_within_the_stretch(scale: float) -> None:
-    """Of steps that are ``scale`` s long, a while after 0."""
+    """Derivatives by time at nodes agree for steps that are ``scale`` s long, a while after 0."""
     t = 0.3 + scale * (np.arange(3)[:, None] + PLACES[None, :-1]).ravel()
     t = np.append(t, 0.3 + 3.0 * scale)
     beside = moments_beside(t, t, np.ones(len(t), bool))

@@ -14,7 +14,7 @@ from mbsd.numbers.names import number_named, with_values
 
 OF = ["b.theta", "b.omega", "c.omega"]
 Law = Any
-"""Of a torque: a motion, or a function of time."""
+"""Law of a torque: a motion, or a function of time."""
 
 
 def flat(start: float, speed: float) -> mbsd.Mechanism:
@@ -200,7 +200,7 @@ def blown(driven: bool) -> mbsd.Mechanism:
 def test_how_time_changes_a_motion_is_found_in_all_ways(
     way: str, driven: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What is not found of it would be noise, of which a warning tells."""
+    """Slopes by time are found, else they would be noise and raise a warning."""
     if way != "_in_independent_coordinates":
         monkeypatch.setattr(simulations, "suits", lambda ready: None)
     if way == "_at_nodes":

@@ -141,7 +141,7 @@ def test_a_block_gives_way_to_a_linkage_that_pressed_it_down_while_it_held() -> 
 G = 9.81
 RATE = 2.0
 STATIC, FLOOR, RADIUS, PRELOAD = 0.24, 0.3, 0.02, 20.0
-"""Of pins and feet of tools/models/rough.py."""
+"""Pins and feet with friction, as tools/models/rough.py has them."""
 
 
 def greatest_torque(crank: float, rod: float, senses: tuple[float, float, float]) -> float:

@@ -1,4 +1,4 @@
-"""What cannot be in space is refused with a sentence and a remedy."""
+"""Errors of models in space: each has a sentence and a remedy."""
 
 from __future__ import annotations
 

@@ -70,9 +70,8 @@ def residual(numbers, relative, out):
     r = numbers[pieces.RADIUS]
     value = s - r * (beta - relative[equation.A]) - numbers[equation.PHASE] - relative[ZERO]
     if numbers[pieces.CLOSED] != 0.0:
-        last = pieces.TABLE + pieces.WIDTH * int(
-            numbers[pieces.COUNT]
-        )  # a round: arc length and turning of the tangent
+        # a round: arc length and turning of the tangent
+        last = pieces.TABLE + pieces.WIDTH * int(numbers[pieces.COUNT])
         period = abs(numbers[last + pieces.LENGTH] - r * numbers[last + pieces.TURNING])
         if period > 0.0:
             value -= period * math.floor(value / period + 0.5)

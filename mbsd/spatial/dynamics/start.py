@@ -13,7 +13,7 @@ from mbsd.kinematics.pose.held_values import held_values
 from mbsd.spatial.arrays.packing import Packed, pack, start_row
 from mbsd.spatial.model.mechanism import Model
 
-TOLD = 1e-6
+REPORTED = 1e-6
 """Least change of a given value that is reported, relative to the largest."""
 
 
@@ -49,7 +49,7 @@ def start_velocities(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray)
     changes = [
         f"{name} is {row @ v[3:]:.6g} {unit}, not {value:.6g}"
         for row, value, (name, unit) in zip(rows, values, names, strict=True)
-        if abs(row @ v[3:] - value) > TOLD * fastest
+        if abs(row @ v[3:] - value) > REPORTED * fastest
     ]
     return StartVelocities(v, tuple(changes))
 

@@ -31,7 +31,7 @@ from mbsd.spatial.model.mechanism import Model
 
 
 class Building(Model):
-    """A model in space with methods that add joints and drivers, and refuse at once what is wrong."""
+    """A model in space with methods that add joints and drivers, and raise an error at once for what is wrong."""
 
     fixed = fixed
     revolute = revolute

@@ -1,4 +1,4 @@
-"""What a night shows: its board, its status, and how long a step may be silent."""
+"""Night shift: its board, its status, and how long a step may be silent."""
 
 from __future__ import annotations
 

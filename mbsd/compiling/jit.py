@@ -69,8 +69,8 @@ class _Kernel(CPUDispatcher):
         """Return what Python calls for arguments of these types of numba's."""
         return self.compile(arguments)
 
-    def only_for_python(self) -> Any:
-        """Return what Python calls where one signature alone is compiled, else None."""
+    def only_entry_point(self) -> Any:
+        """Return the machine code that Python calls; None unless exactly one signature is compiled."""
         made = list(self.overloads.values())
         return made[0].entry_point if len(made) == 1 else None
 
@@ -106,9 +106,9 @@ class _Shared(_Kernel):
         """Return what Python calls for arguments of these types of numba's."""
         return self._face.compile(arguments)
 
-    def only_for_python(self) -> Any:
-        """Return what Python calls where one signature alone is compiled, else None."""
-        return self._face.only_for_python()
+    def only_entry_point(self) -> Any:
+        """Return the machine code that Python calls; None unless exactly one signature is compiled."""
+        return self._face.only_entry_point()
 
 
 class _AtAddress(CFunc):
@@ -222,7 +222,7 @@ class Often:
             return function(*arguments)
         self._calls += 1
         result = function(*arguments)
-        machine_code = function.only_for_python()
+        machine_code = function.only_entry_point()
         if machine_code is None and self._calls == OFTEN:
             machine_code = function.for_python(tuple(map(function.typeof_pyval, arguments)))
         self._function = machine_code or function

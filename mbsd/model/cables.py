@@ -23,6 +23,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
 from mbsd.model.body import Marker
@@ -85,6 +87,16 @@ def signed_radii(params: Mapping[str, Any]) -> tuple[float, float]:
     """Return the radii (m) of both wheels of a span, negative where the cable turns clockwise."""
     first, second = params["radius_i"], params["radius_j"]
     return -first if params["clockwise_i"] else first, -second if params["clockwise_j"] else second
+
+
+def span_direction(gap: np.ndarray, radii: tuple[float, float]) -> np.ndarray:
+    """Return the direction (...,) (rad) of a span whose centres are ``gap`` (..., 2) (m) apart.
+
+    ``radii`` are those of :func:`signed_radii`. Where there is no straight piece, it is across the gap.
+    """
+    distance = np.hypot(gap[..., 0], gap[..., 1])
+    lean = np.arcsin(np.clip((radii[1] - radii[0]) / distance, -1.0, 1.0))
+    return np.arctan2(gap[..., 1], gap[..., 0]) - lean
 
 
 CABLE_SPAN = register_joint(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from mbsd.derivatives.free.explicit_time import find_toggles, moments_beside
+from mbsd.derivatives.free.explicit_time import find_toggles, stencil_at
 from mbsd.derivatives.free.linear_motion import NODES, PLACES, carried, own_rates
 from mbsd.derivatives.free.mesh import first_edges, longest_steps, looked_at, nodes_of, refined
 
@@ -66,7 +66,7 @@ def test_rates_of_the_motion_itself_take_errors_of_steps_from_its_changes() -> N
     for part in (0.0, 1e-6):  # by which the equations are off, as along a motion that is not quite one
         begun = np.stack([3.0 * u[0], 3.0 * u[0] + other[0]], axis=1)
         plain = carried(t, a * (1.0 + part), b, begun, slight)
-        line = carried(t, a * (1.0 + part), b, begun, slight, itself=u)
+        line = carried(t, a * (1.0 + part), b, begun, slight, flow=u)
         right = np.stack([3.0 * u, 3.0 * u + other], axis=2)
         error = np.abs(line.y - right).max(axis=(0, 1)), np.abs(plain.y - right).max(axis=(0, 1))
         assert error[0][0] < 1e-13
@@ -81,7 +81,7 @@ def test_a_motion_that_is_rounding_corrects_nothing() -> None:
     a, b, slight = np.full((len(t), 1, 2), -1.0), np.zeros((len(t), 1, 1)), np.full((2, 1), 1e-9)
     noise = np.random.default_rng(1).normal(0.0, 1e-17, (len(t), 2))
     plain = carried(t, a, b, np.ones((2, 1)), slight)
-    assert (carried(t, a, b, np.ones((2, 1)), slight, itself=noise).y == plain.y).all()
+    assert (carried(t, a, b, np.ones((2, 1)), slight, flow=noise).y == plain.y).all()
 
 
 def test_coupled_equations_are_those_of_an_integrator() -> None:
@@ -163,14 +163,14 @@ def test_an_event_is_an_edge_and_steps_come_closer_where_errors_are() -> None:
 
 
 @pytest.mark.parametrize("scale", [1.0, 1e-4, 1e-7])
-def test_moments_beside_nodes_tell_slopes_from_within_the_stretch(scale: float) -> None:
+def test_stencil_at_nodes_tell_slopes_from_within_the_stretch(scale: float) -> None:
     """Derivatives by time at nodes agree for steps that are ``scale`` s long, a while after 0."""
     t = 0.3 + scale * (np.arange(3)[:, None] + PLACES[None, :-1]).ravel()
     t = np.append(t, 0.3 + 3.0 * scale)
-    beside = moments_beside(t, t, np.ones(len(t), bool))
-    assert (beside.times >= t[0]).all()
-    assert (beside.times <= t[-1]).all()
-    slope = (beside.weights * np.sin((beside.times - 0.3) / scale)).sum(axis=0) * scale
+    stencil = stencil_at(t, t, np.ones(len(t), bool))
+    assert (stencil.times >= t[0]).all()
+    assert (stencil.times <= t[-1]).all()
+    slope = (stencil.weights * np.sin((stencil.times - 0.3) / scale)).sum(axis=0) * scale
     assert np.allclose(slope, np.cos((t - 0.3) / scale), rtol=0.0, atol=max(1e-6, 1e-16 / scale * 1e3))
 
 

@@ -1,9 +1,9 @@
-"""How equations change with time itself, all else held: by differences between moments beside each node.
+"""Slopes of the equations by time alone, q and v held: by a five-point stencil of times at each node.
 
     u = (q', v') of the motion solves   u' = A u + df/dt        of  v' = f(t, q, v)
 
-It says what steps err (linear_motion.py). A step is as long as the motion lets it be, so that moments a small part of
-it away tell df/dt to many digits: the part is larger for short steps, of which times themselves leave few digits.
+It tells the error of a step (linear_motion.py). A step is as long as the motion lets it be, so times a small part of it
+away give df/dt to many digits. The part is larger for short steps, where t itself leaves few digits.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from mbsd.derivatives.free.linear_motion import NODES
 
 STENCILS = {0: (-2, -1, 0, 1, 2), 2: (0, 1, 2, 3, 4), -2: (-4, -3, -2, -1, 0)}
-"""Moments beside a node inside, at the start, and at the end of a stretch, by how far they are shifted."""
+"""Places of the times about a node inside, at the start, and at the end of a stretch, by how far they are shifted."""
 WEIGHTS = {
     0: np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0,
     2: np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12.0,
@@ -29,23 +29,23 @@ ABOVE = 3.0
 
 
 @dataclass
-class Beside:
-    """Moments beside T times."""
+class Stencil:
+    """Five times at each of T times, and the weights of values there in the slope by time."""
 
     times: np.ndarray
     """(5, T) s."""
     weights: np.ndarray
-    """(5, T) 1/s, of values there in their slope by time."""
+    """(5, T) 1/s."""
     passing: np.ndarray
-    """(T,) whether the motion passes a toggle."""
+    """(T,) True where the motion passes a toggle."""
 
-    def sliced(self, at: slice) -> Beside:
-        """Return the moments beside some of the times."""
-        return Beside(self.times[:, at], self.weights[:, at], self.passing[at])
+    def sliced(self, at: slice) -> Stencil:
+        """Return the stencil of some of the times."""
+        return Stencil(self.times[:, at], self.weights[:, at], self.passing[at])
 
 
-def moments_beside(t: np.ndarray, nodes: np.ndarray, passing: np.ndarray) -> Beside:
-    """Return moments beside times t (T,) (s) of a stretch, none before its first or after its last.
+def stencil_at(t: np.ndarray, nodes: np.ndarray, passing: np.ndarray) -> Stencil:
+    """Return the stencil of times t (T,) (s) of a stretch, within its first and its last.
 
     ``nodes`` (8 d + 1,) are the nodes of its steps among them (s).
     """
@@ -60,11 +60,11 @@ def moments_beside(t: np.ndarray, nodes: np.ndarray, passing: np.ndarray) -> Bes
         at = shift == kind
         times[:, at] = t[at] + np.array(places)[:, None] * apart[at]
         weights[:, at] = WEIGHTS[kind][:, None] / apart[at]
-    return Beside(times, weights, passing)
+    return Stencil(times, weights, passing)
 
 
 def find_toggles(t: np.ndarray, a: np.ndarray) -> np.ndarray:
-    """Return at which times t (T,) (s) accelerations a (T, n) are those of a toggle: nowhere if none are sudden."""
+    """Return (T,) True where accelerations a (T, n) at times t (s) are those of a toggle, if any are."""
     size = np.linalg.norm(a, axis=1)
     mean = np.trapezoid(size, t) / (t[-1] - t[0])
     return (size > ABOVE * mean) & (size.max(initial=0.0) > SUDDEN * mean)

@@ -31,7 +31,7 @@ from mbsd.derivatives.driven.tangents import (
     steps_along,
 )
 from mbsd.derivatives.free.differentiated import Made, Nodes, Own, Scratch, differentiate
-from mbsd.derivatives.free.explicit_time import Beside, moments_beside
+from mbsd.derivatives.free.explicit_time import Stencil, stencil_at
 from mbsd.derivatives.free.linear_motion import NODES, ByTime, carried
 from mbsd.derivatives.numbers.terms import Along, Change, Left, Terms, stacked
 from mbsd.derivatives.numbers.variants import Variants
@@ -64,7 +64,7 @@ class Stretch:
     autonomous: bool = False
     """True if time itself changes nothing, so that the motion's own rates are one of its changes."""
     passing: np.ndarray | None = None
-    """(T,) whether the motion passes a toggle, by ``find_toggles``; None is nowhere."""
+    """(T,) True where the motion passes a toggle, by ``find_toggles``; None is nowhere."""
     solved: bool = True
     """True if accelerations and multipliers are known; else accelerations are estimates."""
     own: Left | None = None
@@ -127,9 +127,9 @@ class FreeTangents:
         self.terms, self.along, self.rows, self.every = terms, stretch.along, stretch.rows, every
         self.dependent, self.asked, self.compact = stretch.dependent, stretch.asked, stretch.compact
         self.nodes, self.solved, self.own = stretch.nodes, stretch.solved, stretch.own
-        self.autonomous, self.beside = stretch.autonomous, None
+        self.autonomous, self.stencil = stretch.autonomous, None
         if stretch.passing is not None and stretch.passing.any() and not stretch.autonomous:
-            self.beside = moments_beside(self.along.t, self.along.t[self.nodes], stretch.passing)
+            self.stencil = stencil_at(self.along.t, self.along.t[self.nodes], stretch.passing)
         packed = terms.packed
         refuse_large(terms, len(self.along.t))
         self.scale = packed.column_scale()
@@ -202,7 +202,7 @@ class _Piece:
         self.free = np.ascontiguousarray(inverse[:, :, len(self.rows) :])
         self.f, self.n = len(basis), inverse.shape[1]
         self.autonomous = whole.autonomous
-        self.beside = None if whole.beside is None else whole.beside.sliced(at)
+        self.stencil = None if whole.stencil is None else whole.stencil.sliced(at)
         self.inertia, self._scale = self.terms.inertia[3:], 1.0 / whole.scale
         self.reach = self._reaches()
         self.effort = self._efforts(whole)
@@ -252,7 +252,7 @@ class _Piece:
         last, asked, numbers = len(self.along.t) - 1, len(self.asked), len(self.every)
         at = self.asked if asked and self.asked[-1] == last else np.append(self.asked, last)
         plain = self.effort is None and can_differentiate(self.terms)
-        first = q if self.beside is None else np.concatenate([q, self.along.v[:1]])
+        first = q if self.stencil is None else np.concatenate([q, self.along.v[:1]])
         made = self._node_by_node(first, at) if plain else self._in_arrays(first, at)
         begun = np.concatenate([self.basis @ q[:, 3:].T, self.basis @ v[:, 3:].T])
         nodes = self.nodes
@@ -263,8 +263,10 @@ class _Piece:
             made.right[nodes, :, :numbers],
             begun,
             slight_changes(self.f, fastest, np.array([variants.size for variants in self.every])),
-            itself=self._rates() if self.autonomous or self.beside is not None else None,
-            by_time=None if self.beside is None else ByTime(made.right[nodes, :, numbers], self.beside.passing[nodes]),
+            flow=self._rates() if self.autonomous or self.stencil is not None else None,
+            by_time=None
+            if self.stencil is None
+            else ByTime(made.right[nodes, :, numbers], self.stencil.passing[nodes]),
         )
         y, parts = line.at(self.along.t[at]), [np.zeros((len(self.every), *part.shape[1:])) for part in made[2:]]
         for out, part in zip(parts, made[2:], strict=True):
@@ -349,13 +351,15 @@ class _Piece:
             own = self.own.each(lambda part: part[:, at])
         else:
             own = by_numbers(self.terms, self.along.take(at), self.every, self.compact[at])
-        return own if self.beside is None else stacked([own, self._by_time(self.beside.sliced(at), at)], np.concatenate)
+        return (
+            own if self.stencil is None else stacked([own, self._by_time(self.stencil.sliced(at), at)], np.concatenate)
+        )
 
-    def _by_time(self, beside: Beside, at: slice) -> Left:
-        """(1, T, ...) how the equations change with time itself at some nodes of the held motion."""
+    def _by_time(self, stencil: Stencil, at: slice) -> Left:
+        """Return (1, T, ...) slopes of the equations by time alone at some nodes of the held motion."""
         along = self.along.take(at)
-        parts = [self.terms.left(replace(along, t=t)) for t in beside.times]
-        return combined(parts, beside.weights[..., None]).each(lambda part: part[None])
+        parts = [self.terms.left(replace(along, t=t)) for t in stencil.times]
+        return combined(parts, stencil.weights[..., None]).each(lambda part: part[None])
 
     def _first(self, begun: np.ndarray, own: Left) -> np.ndarray:
         """(P, 1, m) what J q' and the numbers leave open at the first node, q' being ``begun`` (P, 3 nb) there."""

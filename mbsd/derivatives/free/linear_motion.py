@@ -73,7 +73,7 @@ class Carried:
     errors: np.ndarray
     """(d, 2) what each step adds, and what it leaves out inside alone, as parts of the largest y so far."""
     noise: float
-    """Part of the last y that errors of the motion itself leave unknown, however short steps are."""
+    """Part of the last y that errors of the motion leave unknown, however short steps are."""
 
     def at(self, times: np.ndarray) -> np.ndarray:
         """(R, n + k, c) y at times (R,) (s)."""
@@ -126,60 +126,60 @@ def own_rates(matrix: np.ndarray, right: np.ndarray) -> OwnRates:
 
 
 class ByTime(NamedTuple):
-    """How a motion at 8 d + 1 nodes is changed by time itself."""
+    """How a motion at 8 d + 1 nodes is changed by time alone."""
 
     slope: np.ndarray
     """(8 d + 1, k) how v' changes with time, q and v held."""
     passing: np.ndarray
-    """(8 d + 1,) whether the motion passes a toggle: there alone steps are corrected."""
+    """(8 d + 1,) True where the motion passes a toggle: there alone steps are corrected."""
 
 
 def carried(
     t: np.ndarray, a: np.ndarray, b: np.ndarray, begun: np.ndarray, slight: np.ndarray,
-    kinematics: SameRates | OwnRates = SAME_RATES, itself: np.ndarray | None = None, by_time: ByTime | None = None,
+    kinematics: SameRates | OwnRates = SAME_RATES, flow: np.ndarray | None = None, by_time: ByTime | None = None,
 ) -> Carried:  # fmt: skip
     """Return y at nodes t (8 d + 1,) (s) from ``begun`` (n + k, c), and beyond.
 
     a (8 d + 1, k, n + k), b (8 d + 1, k, c). Errors are parts of the largest y so far, or of ``slight`` (n + k, c)
-    if that is more. ``itself`` (8 d + 1, n + k): rates of the motion, if they correct steps (see the file), with
-    ``by_time`` if time itself changes v'.
+    if that is more. ``flow`` (8 d + 1, n + k): rates of the motion, if they correct steps (see the file), with
+    ``by_time`` if time alone changes v'.
     """
     k, c = b.shape[1], begun.shape[1]
     steps = (len(t) - 1) // NODES
-    if itself is None or k == 0:
-        itself, passing = np.zeros((0, len(begun))), np.zeros(steps, bool)
+    if flow is None or k == 0:
+        flow, passing = np.zeros((0, len(begun))), np.zeros(steps, bool)
     else:
         own = np.zeros((len(t), k)) if by_time is None else by_time.slope
-        passing = _fast_steps(t, itself, k) if by_time is None else _steps_of(by_time.passing).any(axis=1)
+        passing = _fast_steps(t, flow, k) if by_time is None else _steps_of(by_time.passing).any(axis=1)
         b = np.append(b, own[..., None], axis=2)
     corrected = passing.copy()
     out, rates = np.zeros((2, len(t), len(begun), b.shape[2]))
     out[0, :, :c] = begun
     matrix, side = np.zeros((NODES * k, NODES * k)), np.zeros((NODES * k, b.shape[2]))
-    taken = np.zeros((steps, c, 2))
+    removed = np.zeros((steps, c, 2))
     a, b = np.ascontiguousarray(a), np.ascontiguousarray(b)
-    march(kinematics, t, a, b, WEIGHTS, itself, corrected, matrix, side, taken, out, rates)
-    if len(itself):
+    march(kinematics, t, a, b, WEIGHTS, flow, corrected, matrix, side, removed, out, rates)
+    if len(flow):
         out, rates = (np.ascontiguousarray(part[..., :c]) for part in (out, rates))
     largest = np.maximum.accumulate(np.abs(out), axis=0)[NODES::NODES]
     per = 1.0 / np.maximum(largest, slight)
     errors = np.zeros((steps, 2))
     estimate(t, rates, per, HALFWAY, LAST, errors)
     last = np.linalg.norm(np.maximum(np.abs(out[-1, -k:]), slight[-k:]), axis=0)
-    taken = taken[corrected if by_time is None else passing]
-    noise = np.linalg.norm(taken[..., 0] / np.maximum(taken[..., 1], last), axis=0).max(initial=0.0)
+    removed = removed[corrected if by_time is None else passing]
+    noise = np.linalg.norm(removed[..., 0] / np.maximum(removed[..., 1], last), axis=0).max(initial=0.0)
     return Carried(t, out, rates, errors, float(noise))
 
 
-def _fast_steps(t: np.ndarray, itself: np.ndarray, k: int) -> np.ndarray:
-    """(d,) whether rates ``itself`` (8 d + 1, n + k) at the start of a step are fast enough to correct it."""
-    first, length = itself[:-1:NODES], np.diff(t[::NODES])
+def _fast_steps(t: np.ndarray, flow: np.ndarray, k: int) -> np.ndarray:
+    """Return (d,) True where ``flow`` (8 d + 1, n + k) at the start of a step are fast enough to correct it."""
+    first, length = flow[:-1:NODES], np.diff(t[::NODES])
     size = (first[:, -k:] ** 2).sum(axis=1) + (first[:, :-k] ** 2).sum(axis=1) / length**2
-    return size >= (SLOW * np.abs(itself[:, -k:]).max()) ** 2
+    return size >= (SLOW * np.abs(flow[:, -k:]).max()) ** 2
 
 
 def _steps_of(values: np.ndarray) -> np.ndarray:
-    """(d, 9) values at nodes (8 d + 1,), step by step."""
+    """Return values at nodes (8 d + 1,) step by step, (d, 9)."""
     return values[_nodes_of(np.arange((len(values) - 1) // NODES))]
 
 
@@ -367,43 +367,43 @@ def _size(u, f, h):
 
 
 @internal
-def correct(itself, f, h, y, taken):
-    """Take from y (9, n + k, c + 1) at the nodes of a step what its last column errs in ``itself`` (9, n + k).
+def correct(flow, f, h, y, removed):
+    """Take from y (9, n + k, c + 1) at the nodes of a step the error that its last column has in ``flow`` (9, n + k).
 
-    taken (c, 2): the size of what is taken at the end, and that of what is left beside tau u. Returns whether it errs
-    little enough; else nothing is taken.
+    removed (c, 2): the size of what is removed at the end, and that of the rest y - tau u. Returns True if u errs
+    little enough; else nothing is removed.
     """
-    coordinates = itself.shape[1] - f
+    coordinates = flow.shape[1] - f
     last = y.shape[2] - 1
     for i in range(NODES + 1):
-        for k in range(itself.shape[1]):
-            y[i, k, last] -= itself[i, k]
+        for k in range(flow.shape[1]):
+            y[i, k, last] -= flow[i, k]
     error = _size(y[NODES, :, last], f, h)
-    size = _size(itself[0], f, h)
-    consistent = size > 0.0 and error <= CONSISTENT * CONSISTENT * _size(itself[NODES], f, h)
+    size = _size(flow[0], f, h)
+    consistent = size > 0.0 and error <= CONSISTENT * CONSISTENT * _size(flow[NODES], f, h)
     for c in range(last):
         shift = 0.0
-        for k in range(itself.shape[1]):
-            shift += itself[0, k] * y[0, k, c] / (h * h if k < coordinates else 1.0)
+        for k in range(flow.shape[1]):
+            shift += flow[0, k] * y[0, k, c] / (h * h if k < coordinates else 1.0)
         shift /= max(size, 1e-300)
         rest = 0.0
         for i in range(1, NODES + 1 if consistent else 1):
-            for k in range(itself.shape[1]):
+            for k in range(flow.shape[1]):
                 y[i, k, c] -= shift * y[i, k, last]
-        for k in range(itself.shape[1]):
-            part = (y[NODES, k, c] - shift * itself[NODES, k]) / (h if k < coordinates else 1.0)
+        for k in range(flow.shape[1]):
+            part = (y[NODES, k, c] - shift * flow[NODES, k]) / (h if k < coordinates else 1.0)
             rest += part * part
-        taken[c, 0] = abs(shift) * math.sqrt(error)
-        taken[c, 1] = math.sqrt(rest)
+        removed[c, 0] = abs(shift) * math.sqrt(error)
+        removed[c, 1] = math.sqrt(rest)
     return consistent
 
 
 @kernel
-def march(kinematics, t, a, b, weights, itself, corrected, matrix, side, taken, out, rates):
+def march(kinematics, t, a, b, weights, flow, corrected, matrix, side, removed, out, rates):
     """Fill out and rates (8 d + 1, n + k, c) from out[0], by ``weights`` (8, 9); matrix and side are scratch.
 
     a (8 d + 1, k, n + k), b (8 d + 1, k, c). Each step is solved for v at its nodes, of which q follows. Where there
-    are rates of the motion, ``itself`` (8 d + 1, n + k), the last of the columns is theirs, and what is ``taken``
+    are rates of the motion, ``flow`` (8 d + 1, n + k), the last of the columns is theirs, and what is ``removed``
     (d, c, 2) in steps that are to be ``corrected`` (d,) is what ``correct`` gives; those that cannot be are left out.
     """
     f = b.shape[1]
@@ -411,9 +411,9 @@ def march(kinematics, t, a, b, weights, itself, corrected, matrix, side, taken, 
     for first in range(0, t.shape[0] - 1, NODES):
         h = t[first + NODES] - t[first]
         own = slice(first, first + NODES + 1)
-        if itself.shape[0] > 0:
-            for k in range(itself.shape[1]):
-                out[first, k, out.shape[2] - 1] = itself[first, k]
+        if flow.shape[0] > 0:
+            for k in range(flow.shape[1]):
+                out[first, k, out.shape[2] - 1] = flow[first, k]
         rate_at(kinematics, first, a[first], b[first], out[first], rates[first])
         fill_gain(kinematics, h, first, weights, out[first], rates[first])
         fill_matrix(kinematics, h, a[own], weights, matrix)
@@ -426,7 +426,7 @@ def march(kinematics, t, a, b, weights, itself, corrected, matrix, side, taken, 
                     node[n + k, c] = side[i * f + k, c]
             fill_coordinates(kinematics, h, weights, i, out[first], f, side, node)
         if corrected[first // NODES]:
-            corrected[first // NODES] = correct(itself[own], f, h, out[own], taken[first // NODES])
+            corrected[first // NODES] = correct(flow[own], f, h, out[own], removed[first // NODES])
         for i in range(1, NODES + 1):
             rate_at(kinematics, first + i, a[first + i], b[first + i], out[first + i], rates[first + i])
 

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from mbsd.derivatives.free.explicit_time import find_toggles, moments_beside
+from mbsd.derivatives.free.explicit_time import find_toggles, stencil_at
 from mbsd.derivatives.free.free_tangents import REACH, Stretch, Tangents, at_rows, slight_changes
 from mbsd.derivatives.free.linear_motion import ByTime, Carried, carried
 from mbsd.derivatives.numbers.terms import Along, Terms
@@ -118,12 +118,12 @@ class IndependentTangents:
         y = np.concatenate([self.basis @ self.both.begun(part).T for part in range(2)])
         fastest = float(np.abs(speed).max(initial=0.0)) or 1.0
         slight = slight_changes(f, fastest, np.array(self.both.sizes))
-        itself, by_time, passing = None, None, find_toggles(t, rates[:, 0])
+        flow, by_time, passing = None, None, find_toggles(t, rates[:, 0])
         if self.autonomous or passing.any():
-            itself = np.concatenate([speed, rates[:, 0]], axis=1)
+            flow = np.concatenate([speed, rates[:, 0]], axis=1)
         if passing.any() and not self.autonomous:
             by_time = ByTime(self._by_time(t, states[:, :1].copy(), passing), passing)
-        return carried(t, matrix.transpose(0, 2, 1).copy(), right, y, slight, itself=itself, by_time=by_time)
+        return carried(t, matrix.transpose(0, 2, 1).copy(), right, y, slight, flow=flow, by_time=by_time)
 
     def motion(self, along: Outputs, traces: Mapping[str, Marker]) -> Motions:
         """The motion itself."""
@@ -261,12 +261,12 @@ class IndependentTangents:
         return out
 
     def _by_time(self, t: np.ndarray, states: np.ndarray, passing: np.ndarray) -> np.ndarray:
-        """(T, f) how z'' changes with time itself at nodes t (T,) and states (T, 1, 2, 3 + f). Raises NotSmooth."""
-        system, beside = self.ready.packed.system, moments_beside(t, t, passing)
+        """Return (T, f) slopes of z'' by time alone at nodes t (T,) and states (T, 1, 2, 3 + f). Raises NotSmooth."""
+        system, stencil = self.ready.packed.system, stencil_at(t, t, passing)
         slope = np.zeros((len(t), self.f))
         shapes = self.scratch.rate.shape, self.scratch.cos_sin.shape, (2, len(self.scratch.q))
         unused = Held(*(np.zeros((len(t), *shape)) for shape in shapes))
-        for times, weights in zip(beside.times, beside.weights, strict=True):
+        for times, weights in zip(stencil.times, stencil.weights, strict=True):
             self._begin(self.arrays, system.mass, system.inertia, states[0, 0], float(times[0]))
             out = np.zeros((len(t), 1, self.f))
             clear = rates_beside(self.arrays, self.scratch, times, states, unused, np.zeros(1), out)

@@ -10,7 +10,7 @@ from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.carriers import along_line, on_body
 from mbsd.drawing.look import INK, QUIET
 from mbsd.drawing.pose import Pose
-from mbsd.model.cables import signed_radii
+from mbsd.model.cables import signed_radii, span_direction
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
@@ -141,11 +141,8 @@ def draw_span(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str])
         with canvas.on(on_body(marker.body.name)):
             angle = pose.frames[marker.body.name][2]
             draw_disc(canvas, centre, abs(radius), angle, colours.get(marker.body.name, QUIET))
-    gap = ends[1] - ends[0]
-    offset, distance = signed[1] - signed[0], float(np.hypot(*gap))
-    if distance > abs(offset):
-        along = math.atan2(gap[1], gap[0]) - math.asin(offset / distance)
-        left = np.array([-math.sin(along), math.cos(along)])
-        ends = [centre - radius * left for centre, radius in zip(ends, signed, strict=True)]
+    along = float(span_direction(ends[1] - ends[0], signed))
+    left = np.array([-math.sin(along), math.cos(along)])
+    ends = [centre - radius * left for centre, radius in zip(ends, signed, strict=True)]
     canvas.line(ends, INK, 1.8, order=5)
     canvas.label(joint.name, (ends[0] + ends[1]) / 2, 0.5)

@@ -15,7 +15,7 @@ import numpy as np
 
 from mbsd.arrays.reactions import marker_places
 from mbsd.base.errors import LimitError
-from mbsd.model.cables import signed_radii
+from mbsd.model.cables import signed_radii, span_direction
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
@@ -71,10 +71,7 @@ def _wrap(packed: Packed, q: np.ndarray, spans: tuple[Joint, Joint], markers: tu
     places = [marker_places(packed, q, marker) for marker in markers]
     directions = []
     for joint, a, b in zip(spans, places[:2], places[1:], strict=True):
-        first, second = signed_radii(joint.params)
-        gap = b - a
-        lean = np.arcsin(np.clip((second - first) / np.hypot(*gap.T), -1.0, 1.0))
-        directions.append(np.arctan2(gap[:, 1], gap[:, 0]) - lean)
+        directions.append(span_direction(b - a, signed_radii(joint.params)))
     sign = math.copysign(1.0, signed_radii(spans[0].params)[1])
     wrap = np.unwrap(sign * (directions[1] - directions[0]))
     return wrap - 2.0 * math.pi * math.floor((float(wrap[0]) + STRAIGHT) / (2.0 * math.pi))

@@ -1,14 +1,14 @@
-"""Equations along a motion in space: Phi, J and gamma of all rows, weight and inertia of all bodies."""
+"""Equations along a motion in space: Phi, J and gamma of all rows, loads of all bodies."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 
 from mbsd.equations.laws import Laws
 from mbsd.spatial.arrays.packing import Packed
-from mbsd.spatial.equations.evaluation import tabulate
-from mbsd.spatial.equations.tabulated_forces import tabulate_forces
-from mbsd.spatial.model.rotation import rotation_matrix
+from mbsd.spatial.equations.evaluation import tabulate, tabulate_loads
 
 
 def tabulated(
@@ -40,25 +40,14 @@ def _all_rows(
     return phi, packed.spread(compact), gamma
 
 
-def forces_along(
-    packed: Packed, laws: Laws, times: np.ndarray, drives: np.ndarray, q: np.ndarray, v: np.ndarray, turns: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return loads (T, 3 + 6 n) of all forces, in the world, and multipliers (T, m) of their rows."""
-    load, lam = np.zeros_like(v), np.zeros((len(q), len(packed.ws.phi)))
-    if len(packed.forces):
-        whole = (np.ascontiguousarray(part) for part in (times, drives, q, v, turns))
-        tabulate_forces(packed.system, laws, *whole, packed.ws, load, lam)
+def loads_along(packed: Packed, laws: Laws, motion: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return loads (T, 3 + 6 n) and multipliers (T, m) of the rows of forces along a motion.
+
+    Loads are weight and forces less inertia: force and torque about centres of mass, in the world. ``motion`` is a
+    DrivenMotion (mbsd/spatial/kinematics/newton.py).
+    """
+    load, lam = np.zeros_like(motion.v), np.zeros((len(motion.q), len(packed.ws.phi)))
+    series = (motion.times, motion.drives, motion.q, motion.v, motion.a, motion.turn)
+    whole = (np.ascontiguousarray(part) for part in series)
+    tabulate_loads(packed.system, laws, *whole, packed.ws, load, lam)
     return load, lam
-
-
-def load_of(packed: Packed, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
-    """Return (T, 3 + 6 n) weight less inertia: force and torque about centres of mass, in the world."""
-    out = np.zeros_like(v)
-    pose, rate, bend = q[:, 3:].reshape(len(q), -1, 7), v[:, 3:].reshape(len(q), -1, 6), a[:, 3:].reshape(len(q), -1, 6)
-    system, load = packed.system, out[:, 3:].reshape(len(q), -1, 6)
-    load[..., :3] = system.mass[1:, None] * (system.gravity - bend[..., :3])
-    rotation = rotation_matrix(pose[..., 3:])
-    w, turning = (np.einsum("tbji,tbj->tbi", rotation, part[..., 3:]) for part in (rate, bend))
-    moment = system.inertia[1:]
-    load[..., 3:] = -np.einsum("tbij,tbj->tbi", rotation, moment * turning + np.cross(w, moment * w))
-    return out

@@ -11,6 +11,7 @@ from mbsd.compiling.jit import apart, inlined, kernel
 from mbsd.spatial.equations.along import bend_alongs, measure_alongs
 from mbsd.spatial.equations.distance import bend_distances, measure_distances
 from mbsd.spatial.equations.dot import bend_dots, measure_dots
+from mbsd.spatial.equations.forces import apply_forces
 from mbsd.spatial.equations.point import bend_points, measure_points
 from mbsd.spatial.equations.turn import bend_turns, measure_turns
 from mbsd.spatial.equations.vectors import carry_vectors, turn_vectors
@@ -119,6 +120,18 @@ def tabulate(system, drives, q, v, turns, ws, phi, jac, gamma):
             phi[k, r] = ws.phi[r]
             for c in range(jac.shape[2]):
                 jac[k, r, c] = ws.jac[r, c]
+
+
+@kernel
+def tabulate_loads(system, laws, times, drives, q, v, a, turns, ws, load, lam):
+    """Fill load (T, 3 + 6 n) with weight, forces and less inertia, and lam (T, m) of the rows of forces."""
+    for k in range(q.shape[0]):
+        for n in range(ws.guess.shape[0]):
+            ws.guess[n] = turns[k, n]
+        evaluate_position(system, q[k], drives[k], ws)
+        find_loads(system, v[k], a[k], ws, load[k])
+        if system.force.shape[0] > 0:
+            apply_forces(system, laws, times[k], v[k], ws, load[k], lam[k])
 
 
 @kernel

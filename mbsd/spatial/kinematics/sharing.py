@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from mbsd.equations.laws import Laws
-from mbsd.spatial.arrays.along import forces_along, load_of, tabulated
+from mbsd.spatial.arrays.along import loads_along, tabulated
 from mbsd.spatial.arrays.packing import Packed
 from mbsd.spatial.kinematics.newton import DrivenMotion
 
@@ -20,10 +20,9 @@ JACOBIAN_NUMBERS = 2_000_000
 
 def least_norm(packed: Packed, laws: Laws, motion: DrivenMotion) -> np.ndarray:
     """Return multipliers (T, m) of least norm along a motion."""
-    times, drives, q, v, a, turns = motion.times, motion.drives, motion.q, motion.v, motion.a, motion.turn
+    drives, q, v, turns = motion.drives, motion.q, motion.v, motion.turn
     count, rows = len(q), len(packed.row_joint)
-    loads, lam = forces_along(packed, laws, times, drives, q, v, turns)
-    loads += load_of(packed, q, v, a)
+    loads, lam = loads_along(packed, laws, motion)
     each = max(1, JACOBIAN_NUMBERS // (rows * packed.freedoms))
     for first in range(0, count, each):
         part = slice(first, first + each)

@@ -24,8 +24,7 @@ from __future__ import annotations
 
 from mbsd.model.laws import harmonic
 from mbsd.spatial.model.body import Fixing, Place
-from mbsd.spatial.model.ends import ends_given
-from mbsd.spatial.model.entries import Law, enter, sliding_joint, turning_joint
+from mbsd.spatial.model.entries import Law, ends_given, enter, sliding_joint, turning_joint
 from mbsd.spatial.model.joint import Joint, JointKind, register_joint
 from mbsd.spatial.model.mechanism import Model
 from mbsd.spatial.model.rows import along, distance, turn

@@ -87,6 +87,29 @@ def enter(
     return joint
 
 
+def ends_given(
+    m: Model, what: str, first: Fixing, second: Fixing, start: Place | None, end: Place | None
+) -> tuple[Marker, Marker]:
+    """Return markers at both ends, given or from places of the world (m). Raises ModelError."""
+    markers = []
+    for body, place, name in ((first, start, "start"), (second, end, "end")):
+        if isinstance(body, Marker):
+            if place is not None:
+                raise ModelError(f"{what} has a marker and {name}=; a marker has a place, so leave {name} out")
+            markers.append(own_marker(m, what, body))
+        elif place is None:
+            raise ModelError(f"{what} needs {name}=(x, y, z), a place of the world in the design pose (m)")
+        else:
+            markers.append(own_body(m, body, what).world_marker(np.array(place, float), np.eye(3)))
+    refuse_same(what, *markers)
+    return markers[0], markers[1]
+
+
+def design_distance(i: Marker, j: Marker) -> float:
+    """Return how far two markers are apart in the design pose (m)."""
+    return float(np.linalg.norm(j.world_place - i.world_place))
+
+
 def own_marker(m: Model, what: str, marker: Marker) -> Marker:
     """Return a marker on a body of this mechanism. Raises ModelError."""
     own_body(m, marker.body, what)

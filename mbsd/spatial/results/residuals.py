@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.equations.laws import Laws
-from mbsd.spatial.arrays.along import forces_along, load_of, tabulated
+from mbsd.spatial.arrays.along import loads_along, tabulated
 from mbsd.spatial.arrays.packing import Packed
 
 
@@ -19,8 +19,7 @@ def residuals(packed: Packed, laws: Laws, motion: Any) -> tuple[float, float, fl
         nu[:, row] = motion.drives[:, law, 1]
     speed = np.einsum("trc,tc->tr", jac, motion.v[:, 3:]) - nu
     bend = np.einsum("trc,tc->tr", jac, motion.a[:, 3:]) - gamma
-    loads, _ = forces_along(packed, laws, motion.times, motion.drives, motion.q, motion.v, motion.turn)
-    loads += load_of(packed, motion.q, motion.v, motion.a)
+    loads, _ = loads_along(packed, laws, motion)
     power = (loads * motion.v).sum(axis=1) - (motion.lam[:, : nu.shape[1]] * nu).sum(axis=1)
     return (
         float(np.abs(phi).max(initial=0.0)),

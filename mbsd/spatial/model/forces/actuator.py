@@ -6,8 +6,7 @@ F = amount(t)        it pushes the places apart
 from __future__ import annotations
 
 from mbsd.spatial.model.body import Fixing, Place
-from mbsd.spatial.model.ends import ends_given
-from mbsd.spatial.model.entries import Law, add_force, amount_given
+from mbsd.spatial.model.entries import Law, add_force, amount_given, ends_given
 from mbsd.spatial.model.force import Force, ForceKind, Push, register_force
 from mbsd.spatial.model.mechanism import Model
 from mbsd.spatial.model.rows import distance

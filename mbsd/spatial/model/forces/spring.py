@@ -6,8 +6,7 @@ F = stiffness (length - l) - damping l'        l = |d|; it pushes the places apa
 from __future__ import annotations
 
 from mbsd.spatial.model.body import Fixing, Place
-from mbsd.spatial.model.ends import design_distance, ends_given
-from mbsd.spatial.model.entries import add_force, not_negative
+from mbsd.spatial.model.entries import add_force, design_distance, ends_given, not_negative
 from mbsd.spatial.model.force import Force, ForceKind, Push, register_force
 from mbsd.spatial.model.mechanism import Model
 from mbsd.spatial.model.rows import distance

@@ -9,8 +9,7 @@ from __future__ import annotations
 
 from mbsd.base.errors import ModelError
 from mbsd.spatial.model.body import SHORTEST, Fixing, Place
-from mbsd.spatial.model.ends import design_distance, ends_given
-from mbsd.spatial.model.entries import enter
+from mbsd.spatial.model.entries import design_distance, ends_given, enter
 from mbsd.spatial.model.joint import Joint, JointKind, register_joint
 from mbsd.spatial.model.mechanism import Model
 from mbsd.spatial.model.rows import distance

@@ -11,8 +11,7 @@ import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.spatial.model.body import SHORTEST, Direction, Fixing, Marker, Place, refuse_not_perpendicular
-from mbsd.spatial.model.ends import design_distance, ends_given
-from mbsd.spatial.model.entries import enter
+from mbsd.spatial.model.entries import design_distance, ends_given, enter
 from mbsd.spatial.model.joint import Joint, JointKind, register_joint
 from mbsd.spatial.model.mechanism import Model, own_body
 from mbsd.spatial.model.rotation import frame

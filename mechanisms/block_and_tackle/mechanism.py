@@ -1,6 +1,6 @@
 """A block and tackle: a counterweight lifts nearly twice its own weight, half as far.
 One rope runs from the beam down round the loose block, up over the fixed pulley and down to the counterweight. Each of
-its strands pulls alike, so two of them carry the block.
+its strands pulls nearly alike, so two of them carry the block.
 """
 
 from dataclasses import dataclass

@@ -63,8 +63,8 @@ RC: dict[Any, Any] = {
 }
 
 
-LETTERS = 125
-"""Letters of a sentence over a title, at most."""
+LETTERS = 118
+"""Letters of a sentence under a title, at most."""
 LONGEST = 12
 """Letters of a label that has room at the right; longer ones are smaller."""
 HALO = [withStroke(linewidth=3, foreground="white")]
@@ -82,18 +82,19 @@ def house_style() -> Iterator[None]:
 
 
 def page(mechanism: str, title: str, subtitle: str, shows: str = "") -> Figure:
-    """Return an empty figure with its title, upper left, and over it a sentence on what it shows."""
+    """Return an empty figure with its title, upper left, and under it a sentence on what it shows."""
     figure = Figure(figsize=SIZE)
     FigureCanvasAgg(figure)
     name = mechanism.replace("_", "-").capitalize()
-    figure.text(0.035, 0.945, f"{name}: {title}", fontsize=15, fontweight="bold", va="center")
-    figure.text(0.035, 0.982, shows, fontsize=9, va="center")
-    figure.text(0.035, 0.903, subtitle, fontsize=10, color=QUIET, va="center")
+    heights = (0.96, 0.922, 0.891) if shows else (0.945, 0.922, 0.903)
+    figure.text(0.035, heights[0], f"{name}: {title}", fontsize=15, fontweight="bold", va="center")
+    figure.text(0.035, heights[1], shows, fontsize=10, va="center")
+    figure.text(0.035, heights[2], subtitle, fontsize=10, color=QUIET, va="center")
     return figure
 
 
-def insight_over(motion: Motion, *kinds: str) -> str:
-    """Return the sentence of the most telling insight of these kinds that fits over a title; empty without any."""
+def insight_under(motion: Motion, *kinds: str) -> str:
+    """Return the sentence of the most telling insight of these kinds that fits under a title; empty without any."""
     sentences = (each.sentence() for each in insights(motion) if each.kind in kinds)
     return next((sentence for sentence in sentences if len(sentence) <= LETTERS), "")
 

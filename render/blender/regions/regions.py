@@ -141,9 +141,7 @@ def rectangles(region: Array, each: float) -> list[Rect]:
 
 
 def cost(rects: list[Rect], region: Array, each: float) -> float:
-    """Return the cost of rendering ``rects`` in parts of the cost of the whole picture, with that of the small one's
-    start.
-    """
+    """Return the cost of rendering ``rects`` and of starting the small picture, as a share of the whole picture's."""
     area = sum((bottom - top) * (right - left) for top, bottom, left, right in rects)
     return float(RENDERED * region.sum() + BLOCKED * area + each * (len(rects) + 1)) / region.size
 

@@ -1,9 +1,9 @@
 """The stencil: a card before the camera with holes where a picture is rendered. Only the camera sees it.
 
 The plate is painted on the card, so that the denoiser finds no edge where a hole ends. A ray that meets the card costs
-little, and one that passes a hole is the same as without the card. Since the lens is
-open, the card is blurred by the angle c = D (1/d - 1/f) at a distance d, for an aperture D and a focus at f. So the
-holes are wider by half of it than what is seen through them.
+little, and one that passes a hole is the same as without the card. Since the lens is open, the card is blurred by the
+angle c = D (1/d - 1/f) at a distance d, for an aperture D and a focus at f. So the holes are wider by half of it than
+what is seen through them.
 """
 
 from __future__ import annotations

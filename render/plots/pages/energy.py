@@ -10,14 +10,14 @@ from matplotlib.transforms import blended_transform_factory
 from render.magnitudes import centre_of_mass, energy_floor, power_floor, without_noise
 from render.plots.measures import Horizon, horizon
 from render.plots.pages.motion import draw
-from render.plots.style import INK, PARTS, QUIET, insight_over, page, rows
+from render.plots.style import INK, PARTS, QUIET, insight_under, page, rows
 from shared.contract import EventMark, Motion
 from shared.contract.quantity import counted, written
 
 BALANCED = 2e-3
 """The elastic energy is known at the samples alone; its rate is this good, relative to the largest power."""
 ENERGIES = ("power_sign", "losses", "energy_kept", "decay", "no_effort")
-"""Kinds of insights over the page."""
+"""Kinds of insights under the title of the page."""
 MARKED = 12
 """Impacts that are marked with what they take; of more, those that take most."""
 
@@ -30,7 +30,7 @@ def energy(motion: Motion) -> Figure:
     gained = without_noise(np.asarray(motion.energy.potential) - motion.energy.potential[0], floor)
     given, rate = powers(motion)
     impacts = sorted(_impacts(motion, floor), key=lambda event: event.energy)
-    figure = page(motion.mechanism, "energy and power", statement(motion), insight_over(motion, *ENERGIES))
+    figure = page(motion.mechanism, "energy and power", statement(motion), insight_under(motion, *ENERGIES))
     upper, lower = rows(figure, 2)
     lines = [("kinetic", kinetic, PARTS[0]), ("Δ potential", gained, PARTS[1])]
     draw(upper, over, "energy", "J", [*lines, ("total", kinetic + gained, INK)], floor=floor)

@@ -19,7 +19,7 @@ from render.magnitudes import (
 )
 from render.plots.measures import dress_plane, horizon
 from render.plots.pages.motion import draw
-from render.plots.style import INK, PALETTE, SIZE, acting_on, ink_of, insight_over, page, rows
+from render.plots.style import INK, PALETTE, SIZE, acting_on, ink_of, insight_under, page, rows
 from shared.contract import Motion
 from shared.contract.quantity import written
 
@@ -60,7 +60,7 @@ def reactions(motion: Motion) -> Figure:
         motion.mechanism,
         "what the joints carry",
         "magnitude of each joint's reaction, and what the driver must give",
-        insight_over(motion, "peak_cause", "peak_weight", "ripple"),
+        insight_under(motion, "peak_cause", "peak_weight", "ripple"),
     )
     for axes, (words, unit, lines) in zip(rows(figure, len(panels)), panels, strict=True):
         draw(axes, over, words, unit, lines, floor=slack if unit == "N m" else weak)
@@ -94,7 +94,7 @@ def forces(motion: Motion) -> Figure:
         motion.mechanism,
         "what the forces do",
         "positive where it makes its length, angle or gap grow; power: what it gives to the motion",
-        insight_over(motion, "work_share", "isolation", "impact", "gas", "losses"),
+        insight_under(motion, "work_share", "isolation", "impact", "gas", "losses"),
     )
     for axes, (words, unit, lines, floor) in zip(rows(figure, len(panels)), panels, strict=True):
         draw(axes, over, words, unit, lines, floor=floor)
@@ -185,7 +185,7 @@ def frame(motion: Motion) -> Figure:
         motion.mechanism,
         "what the frame feels",
         f"inertia alone; moment about {shaken.about} in the report",
-        insight_over(motion, "balance", "couple"),
+        insight_under(motion, "balance", "couple"),
     )
     force, couple, centre = rows(figure, 3)
     draw(

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from render.magnitudes import NOISE, Crank, crank_of, force_scale, speed_scale, without_noise
 from render.plots.measures import Horizon, cut, dress_axis, dress_plane, horizon, mark, turned
-from render.plots.style import FAINT, INK, LABELLED, PARTS, QUIET, Labels, ink_of, insight_over, label_ends, page, rows
+from render.plots.style import FAINT, INK, LABELLED, PARTS, QUIET, Labels, ink_of, insight_under, label_ends, page, rows
 from render.report.written import first_peak, speed
 from shared.contract import BodyMotion, Motion, PointMotion
 from shared.contract.quantity import figures, written
@@ -29,7 +29,7 @@ DASHES = ("-", (0, (5, 1.6)), (0, (1.6, 1.4)), (0, (7, 1.6, 1.6, 1.6)))
 """Dashes of lines of one body in turn."""
 TURNING = ("quick_return", "dwell", "speed_ratio", "speed_peak", "difference", "transmission", "whirl", "swing")
 DRAWN = ("straight_line", "ellipse", "step", "scale", "level", "crossing", "cusp", "centre", "orbit", "reach")
-"""Kinds of insights over the pages of angles and of paths."""
+"""Kinds of insights under the titles of the pages of angles and of paths."""
 Line = tuple[str, np.ndarray, str]
 """Label, values, colour."""
 
@@ -40,7 +40,7 @@ def bodies(motion: Motion) -> Figure:
         motion.mechanism,
         "angles of the bodies",
         "angle, angular velocity and angular acceleration",
-        insight_over(motion, *TURNING),
+        insight_under(motion, *TURNING),
     )
     kinds = (("theta", "angle", "°"), ("omega", "velocity", "rad/s"), ("alpha", "acceleration", "rad/s²"))
     over = horizon(motion)
@@ -254,7 +254,7 @@ def path(motion: Motion, skeleton: Skeleton) -> Figure:
         motion.mechanism,
         "path",
         f"{len(skeleton.poses)} poses and dots in equal times over {_span(motion)}; the first pose is drawn strong",
-        insight_over(motion, *DRAWN),
+        insight_under(motion, *DRAWN),
     )
     axes = figure.add_axes((0.075, 0.085, 0.9, 0.775))
     axes.set_aspect("equal", adjustable="datalim")

@@ -25,9 +25,10 @@ from typing import Any
 import numpy as np
 
 from mbsd.base.errors import ModelError, SimulationError
+from mbsd.derivatives.free.explicit_time import find_toggles, stencil_at
 from mbsd.derivatives.free.free_tangents import REACH, SLIGHT
 from mbsd.derivatives.free.guards import ALIKE, GRAZING
-from mbsd.derivatives.free.linear_motion import SAME_RATES, Carried, carried, own_rates
+from mbsd.derivatives.free.linear_motion import SAME_RATES, ByTime, Carried, carried, own_rates
 from mbsd.derivatives.free.mesh import USUAL, nodes_of
 from mbsd.derivatives.free.rates import (
     IDLE,
@@ -313,12 +314,12 @@ class _March:
         parts = max(1, int(np.ceil(STEPS_OF_METHOD * steps)))
         edges = np.linspace(begin, end, (min(parts, USUAL) if self.run.method.fixed_step else parts) + 1)
 
-        def way(edges: np.ndarray) -> tuple[np.ndarray, float, Any]:
+        def way(edges: np.ndarray) -> tuple[np.ndarray, Any]:
             nodes = nodes_of(edges, NOWHERE)
             every = np.union1d(nodes, inside)
             y = self._repeated(first.y, every, end)
             line = self._carried(nodes, y[np.searchsorted(every, nodes)], begun)
-            return line.errors_of(inside), line.noise, lambda: (line, y[np.searchsorted(every, inside)])
+            return line.errors_of(inside), lambda: (line, y[np.searchsorted(every, inside)])
 
         (line, y), error = refined_to_error(way, edges, False, self.name)
         self.error = max(self.error, error)
@@ -350,9 +351,22 @@ class _March:
                 right[:, :n, p], right[:, n:, p] = slope[:, 0, IDLE:], slope[:, 1, IDLE : IDLE + k]
         size, per = self.size[IDLE:], np.array([1.0 / parameter.size for parameter in self.parameters])
         slight = SLIGHT * np.concatenate([size, self.fastest * size[:k]])[:, None] * per
-        same = n == k and has_same_rates(type(self.dyn))
-        kinematics = SAME_RATES if same else own_rates(matrix[:, :n], right[:, :n])
-        return carried(t, matrix[:, n:], right[:, n:], begun, slight, kinematics)
+        flow, by_time = self._flow(t, y)
+        if n == k and has_same_rates(type(self.dyn)):
+            kinematics = SAME_RATES
+        else:
+            kinematics = own_rates(matrix[:, :n], np.append(right[:, :n], np.zeros((len(t), n, 1)), axis=2))
+        return carried(t, matrix[:, n:], right[:, n:], begun, slight, kinematics, flow, by_time)
+
+    def _flow(self, t: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, ByTime]:
+        """Return rates (T, n + k) of the run at nodes t (T,) (s), and how time alone changes those of velocities."""
+        n, k = self.n, self.k
+        rates = self._rates(self.dyn, t, y)
+        stencil = stencil_at(t, t, find_toggles(t, rates[:, 1, IDLE : IDLE + k]))
+        moved = [self._rates(self.dyn, times, y)[:, 1, IDLE : IDLE + k] for times in stencil.times]
+        slope = np.einsum("it,itk->tk", stencil.weights, np.array(moved))
+        flow = np.concatenate([rates[:, 0, IDLE : IDLE + n], rates[:, 1, IDLE : IDLE + k]], axis=1)
+        return flow, ByTime(slope, stencil.passing)
 
     def _rates(self, dyn: Any, t: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Return q' and v' (T, 2, 3 + n) of a formulation."""

@@ -128,8 +128,8 @@ class SimulationTangents:
 
     # -- ways to the tangents --------------------------------------------------------------------------------------
 
-    def _in_independent_coordinates(self, edges: np.ndarray) -> tuple[np.ndarray, float, Finish]:
-        """Errors of steps between edges, noise, and what evaluates the tangents at outputs. Raises NotSmooth."""
+    def _in_independent_coordinates(self, edges: np.ndarray) -> tuple[np.ndarray, Finish]:
+        """Errors of steps between edges, and what evaluates the tangents at outputs. Raises NotSmooth."""
         ready = self._runs.ready
         coordinates = suits(ready)
         if self._first.q is None or ready is None or coordinates is None or has_kinks(self.terms):
@@ -159,9 +159,9 @@ class SimulationTangents:
                 self.slopes[label] = np.moveaxis(np.tensordot(weights, of(motions), axes=1), 0, -1)
             return None
 
-        return line.errors_of(self._grid[needed]), line.noise, finish
+        return line.errors_of(self._grid[needed]), finish
 
-    def _between_looks(self, edges: np.ndarray) -> tuple[np.ndarray, float, Finish]:
+    def _between_looks(self, edges: np.ndarray) -> tuple[np.ndarray, Finish]:
         """The same of a smooth motion in reference coordinates. Raises NotSmooth."""
         if self._first.q is None:
             raise NotSmooth
@@ -169,7 +169,7 @@ class SimulationTangents:
         whole = between(self._first, np.union1d(nodes, self._grid))
         rows = self._outputs(whole, self._grid)
         needed = self._needed(self._grid)
-        made, errors, noise = self._tangents_at(whole, rows[needed], nodes)
+        made, errors = self._tangents_at(whole, rows[needed], nodes)
         if self._off > CLOSE:
             raise NotSmooth
 
@@ -177,15 +177,15 @@ class SimulationTangents:
             self._keep_simulation(self._recorded().solve(), needed)
             return made
 
-        return errors, noise, finish
+        return errors, finish
 
-    def _at_nodes(self, edges: np.ndarray) -> tuple[np.ndarray, float, Finish]:
+    def _at_nodes(self, edges: np.ndarray) -> tuple[np.ndarray, Finish]:
         """The same of any motion, simulated at the nodes."""
         nodes, grid = nodes_of(edges, self._met), self._grid
         whole = motion_of(self._runs(np.union1d(nodes, apart(grid, self._met, self.span[1] - self.span[0]))))
         rows = self._outputs(whole, grid)
         needed = self._needed(whole.t[rows])
-        made, errors, noise = self._tangents_at(whole, rows[needed], nodes)
+        made, errors = self._tangents_at(whole, rows[needed], nodes)
 
         def finish() -> Tangents:
             assert whole.solution is not None
@@ -199,7 +199,7 @@ class SimulationTangents:
                 made.v[:, -1] += self.along.a[-1] * self.ends[:, None]
             return made
 
-        return errors, noise, finish
+        return errors, finish
 
     def _is_autonomous(self, along: Along) -> bool:
         """Return True if time itself changes nothing along the motion; found once."""
@@ -240,8 +240,8 @@ class SimulationTangents:
 
     # -- nodes -----------------------------------------------------------------------------------------------------
 
-    def _tangents_at(self, whole: Motion, rows: np.ndarray, nodes: np.ndarray) -> tuple[Tangents, np.ndarray, float]:
-        """Tangents at some rows of the simulation, the error that each step between nodes adds, and noise."""
+    def _tangents_at(self, whole: Motion, rows: np.ndarray, nodes: np.ndarray) -> tuple[Tangents, np.ndarray]:
+        """Tangents at some rows of the simulation, and the errors of each step between nodes."""
         asked, known = np.zeros(len(whole.t), bool), np.isin(whole.t, nodes)
         asked[rows] = True
         begins = np.append(True, np.diff(whole.t) <= 0.0)
@@ -253,7 +253,6 @@ class SimulationTangents:
         q, v = self._begun()
         parts: list[Tangents] = []
         errors: list[np.ndarray] = []
-        noise: list[float] = []
         self.ends, self._off = None, 0.0
         autonomous, passing = self._is_autonomous(along), find_toggles(along.t, along.a)
         compact = self.terms.rows(along)[2]
@@ -280,7 +279,6 @@ class SimulationTangents:
                 )
             made = FreeTangents(held[k][0], stretch, held[k][1]).carry(q, v)
             errors.append(made.errors)
-            noise.append(made.noise)
             self._off = max(self._off, made.off)
             parts.append(made.asked)
             parts[-1].lam[..., shared[k]] = np.nan  # how contacts at rest share their friction changes, too
@@ -293,7 +291,7 @@ class SimulationTangents:
                     self.ends = times_moved
         again = np.unique(rows, return_inverse=True)[1]  # two outputs may be nearer to an event than rounding
         tangents = Tangents(*(part[:, again] for part in joined(parts).parts()))
-        return tangents, np.concatenate(errors), float(np.linalg.norm(noise))
+        return tangents, np.concatenate(errors)
 
     def _changes(self, along: Along, compact: np.ndarray, edges: list[int]) -> Iterator[tuple[Left | None, Left]]:
         """By stretch, how the equations change with the numbers at the held motion, and at its first and last node.

@@ -25,6 +25,7 @@ from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.arrays import scratch_for
 from mbsd.dynamics.state import TIME, Settings, start_state
+from tests.derivatives.test_near_toggles import whip
 from tests.dynamics.rigid_body import Flight, RigidBody, entries, watched
 
 INERTIA = np.array([0.3, 0.5, 0.7])
@@ -403,3 +404,26 @@ def test_the_plane_is_the_case_where_rates_are_velocities() -> None:
     assert tangents.q[:, -1, 2] == pytest.approx(known["rod.theta"][-1], rel=1e-6)
     assert np.abs(known["rod.theta"][-1]).min() > 1e-3
     assert tangents.v[:, -1, 2] == pytest.approx(known["rod.omega"][-1], rel=1e-6)
+
+
+@pytest.mark.filterwarnings("ignore:.*Masses are in kilograms")
+def test_a_toggle_of_no_time_leaves_the_changes_of_a_run_their_digits() -> None:
+    """Light links that stop a flywheel of 1e5 kg: in their toggle the changes are thousands of times as large."""
+    end, h = 0.6, 1e-4
+
+    def ready_for(rod: float = 0.45) -> PreparedDynamics:
+        return prepare_dynamics(whip(1e5, rod=rod), 0.0, end, contacts=True)
+
+    ready = ready_for()
+    start = start_state(np.stack([ready.initial.q, ready.initial.v]), len(ready.packed.ws.phi), 0.0)
+    scratch = scratch_for(ready.dynamics, ready.packed.ws, 0, DOP853.stages, DOP853.matrices)
+    width = start.y.shape[1]
+    every = np.full((2, width), 1e-11)
+    settings = Settings(every, 1e-11, every.copy(), 0.1, 1e-14, 1e-3, np.zeros(0))
+    heavier = tuple(ready_for(0.45 + by).dynamics._replace(schur=ready.dynamics.schur) for by in (-h, h))
+    none = np.zeros(width - 3)
+    run = Run(DOP853, ready.dynamics, scratch, settings, start, width - 3)
+    tangents = run_tangents(run, end, [end], [Parameter("rod", none, none, *heavier, h)])
+    column = 3 * ready.packed.body_names.index("flywheel") + 2 - 3
+    known = whip(1e5).sensitivities("flywheel.omega", "rod.mass", times=[0.0, end], simulate=True, tolerance=1e-11)
+    assert tangents.v[0, -1, column] == pytest.approx(known["flywheel.omega"][-1, 0], rel=3e-4)

@@ -19,7 +19,7 @@ def turning(steps: int) -> tuple[float, float, float, float]:
     b = np.zeros((len(t), 1, 1))
     b[:, 0, 0] = 24.0 * np.cos(t)  # x = cos(t) + cos(5 t)
     line = carried(t, a, b, np.array([[2.0], [0.0]]), np.full((2, 1), 1e-9))
-    assert line.errors.shape == (steps, 2)
+    assert line.errors.shape == (steps, 3)
     assert np.allclose(line.at(t), line.y, rtol=0.0, atol=1e-13)
     times = np.linspace(0.0, 3.0, 200)
     ends, inside = (
@@ -43,7 +43,7 @@ def test_errors_are_parts_of_what_has_grown_so_far() -> None:
     a = np.broadcast_to(np.array([[1.0, 0.0]]), (len(t), 1, 2))  # x'' = x: from 1 to exp(20)
     line = carried(t, a, np.zeros((len(t), 1, 1)), np.ones((2, 1)), np.full((2, 1), 1e-9))
     assert np.allclose(line.errors, line.errors[0], rtol=1e-3)
-    assert (line.errors > 0.0).all()
+    assert (line.errors[:, :2] > 0.0).all()
 
 
 def kink(t: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -71,8 +71,8 @@ def test_rates_of_the_motion_itself_take_errors_of_steps_from_its_changes() -> N
         error = np.abs(line.y - right).max(axis=(0, 1)), np.abs(plain.y - right).max(axis=(0, 1))
         assert error[0][0] < 1e-13
         assert error[1][0] > 1e-8
-        assert plain.noise == 0.0
-        assert 0.0 < line.noise < 1e-3
+        assert not plain.errors[:, 2].any()
+        assert 0.0 < np.linalg.norm(line.errors[:, 2]) < 1e-3
         assert np.allclose(line.at(t[::NODES]), line.y[::NODES], rtol=1e-12, atol=1e-12)
 
 
@@ -156,10 +156,12 @@ def test_an_event_is_an_edge_and_steps_come_closer_where_errors_are() -> None:
     t, met = np.linspace(0.0, 1.0, 11), np.array([0.234])
     edges = first_edges((0.0, 1.0), met, t, np.full(10, 0.2))
     assert 0.234 in edges
-    finer = refined(np.array([0.0, 1.0, 2.0]), np.array([[1e-9, 1e-6], [1e-3, 1e-6]]), 1e-5)
+    finer = refined(np.array([0.0, 1.0, 2.0]), np.array([[1e-9, 1e-6, 0.0], [1e-3, 1e-6, 0.0]]), 1e-5)
     assert finer.tolist() == [0.0, 1.0, 1.25, 1.5, 1.75, 2.0]
-    finer = refined(np.array([0.0, 1.0, 2.0]), np.array([[1e-9, 9e-6], [1e-9, 1.1e-5]]), 1e-5)
+    finer = refined(np.array([0.0, 1.0, 2.0]), np.array([[1e-9, 9e-6, 7e-6], [1e-9, 1.1e-5, 0.0]]), 1e-5)
     assert finer.tolist() == [0.0, 1.0, 1.5, 2.0]
+    finer = refined(np.array([0.0, 1.0, 2.0]), np.array([[1e-9, 9e-6, 8e-6], [1e-9, 9e-6, 0.0]]), 1e-5)
+    assert finer.tolist() == [0.0, 0.5, 1.0, 2.0]
 
 
 @pytest.mark.parametrize("scale", [1.0, 1e-4, 1e-7])

@@ -116,3 +116,21 @@ def test_loops_in_a_row_pass_their_change_points_beside_one_that_is_not_exact(ex
     assert np.ptp(sol.energy.total) < 1e-8 * sol.energy.kinetic.max()
     finer = m.simulate(1.34, steps=20, tolerance=1e-11)
     assert np.abs(sol.q - finer.q).max() < 1e-8
+
+
+@pytest.mark.parametrize("aside", [-9e-5, 1.3e-4])
+def test_a_loop_off_by_a_part_in_a_hundred_million_passes_its_change_point(aside: float) -> None:
+    """Its links turn over within 1e-4 rad of the flat pose, beside a loop that is exact there."""
+    m, length = Mechanism("row"), 0.64582560801867
+    rods = [m.bar(f"rod{k}", length, mass=1.0) for k in range(3)]
+    for k, rod in enumerate(rods):
+        m.revolute(f"foot{k}", m.ground.at(k * length, 0.0), rod.start)
+    for k, (left, right, y) in enumerate(zip(rods, rods[1:], (aside, 0.0), strict=False)):
+        deck = m.bar(f"deck{k}", length, mass=1.0)
+        m.revolute(f"left{k}", left.end, deck.start)
+        m.revolute(f"right{k}", deck.at(length, y), right.end)
+    m.start_near(rod0=95.96, rod1=95.96, rod2=95.96, deck0=0.0, deck1=0.0)
+    m.start_moving(rod0=0.3085)
+    sol = m.simulate(0.78, steps=13, tolerance=1e-9)
+    assert sol.stats.steps < 1000
+    assert np.ptp(sol.energy.total) < 1e-5 * sol.energy.kinetic.max()

@@ -134,16 +134,16 @@ def test_ctrl_c_ends_a_run_at_once(extra: str, options: str) -> None:
 
 
 def test_steps_that_creep_towards_a_change_point_end_with_its_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Parallelograms in a row of which one is not quite exact: reference coordinates do not pass where all are flat."""
+    """Parallelograms in a row of which one is off by 1e-7 m: where both are flat links whip ever faster."""
     m, length = Mechanism("row"), 1.3
-    rods = [m.bar(f"rod{k}", length, mass=1.0) for k in range(4)]
+    rods = [m.bar(f"rod{k}", length, mass=1.0) for k in range(3)]
     for k, rod in enumerate(rods):
         m.revolute(f"foot{k}", m.ground.at(k * length, 0), rod.start)
-    for k, more in ((1, 0.0), (2, 0.001), (3, 0.0)):
+    for k, more in ((1, 0.0), (2, 1e-7)):
         deck = m.bar(f"deck{k}", length, mass=1.0)
         m.revolute(f"left{k}", rods[k - 1].end, deck.start)
         m.revolute(f"right{k}", deck.at(length + more, 0.0), rods[k].end)
-    m.start_near(rod0=113, rod1=113, rod2=113, rod3=113, deck1=0, deck2=0, deck3=0)
+    m.start_near(rod0=113, rod1=113, rod2=113, deck1=0, deck2=0)
     m.start_moving(rod0=0.48)
     calls, original = [], motion.advance
 
@@ -153,8 +153,8 @@ def test_steps_that_creep_towards_a_change_point_end_with_its_time(monkeypatch: 
         return original(*given)
 
     monkeypatch.setattr(motion, "advance", advance)
-    with pytest.raises(SimulationError, match=r"no longer advances at t = 0\.\d+ s.* Look for a pose that is singular"):
-        m.simulate(1.34, steps=60, tolerance=1e-10, formulation="reference")
+    with pytest.raises(SimulationError, match=r"no longer advances at t = 1\.\d+ s.* Look for a pose that is singular"):
+        m.simulate(1.34, steps=20, tolerance=1e-9)
 
 
 def looks(times: list[float], steps: list[int]) -> list[Look]:

@@ -97,9 +97,8 @@ class Carried:
     lam: np.ndarray
     """(P, m) lam' there."""
     errors: np.ndarray
-    """(d, 2) what each step adds, and what it leaves out inside alone, as parts of the largest so far."""
-    noise: float
-    """Part of them at the last node that errors of the motion leave unknown."""
+    """(d, 3) what each step adds, and what it leaves out inside alone, as parts of the largest so far; and the part of
+    them at the last node that errors of the motion leave unknown."""
     off: float
     """By how much accelerations were other than about what was known, as part of the largest."""
 
@@ -146,8 +145,7 @@ class FreeTangents:
             q, v = parts[-1].q, parts[-1].v
             first += len(inverse) - 1
         errors, off = np.concatenate([part.errors for part in parts]), max(part.off for part in parts)
-        noise = float(np.linalg.norm([part.noise for part in parts]))
-        return Carried(joined([part.asked for part in parts]), q, v, parts[-1].lam, errors, noise, off)
+        return Carried(joined([part.asked for part in parts]), q, v, parts[-1].lam, errors, off)
 
     def _basis(self, first: int) -> tuple[np.ndarray, np.ndarray]:
         """Z (f, n) at node ``first``, and inverses of [J; Z] up to the last node, whole steps on, that it serves."""
@@ -273,7 +271,7 @@ class _Piece:
             combine(y, part, out)
         q, v, _, lam = (part[:, -1] for part in parts)
         errors = line.errors_of(self.along.t[self.asked])
-        return Carried(Tangents(*(part[:, :asked] for part in parts)), q, v, lam, errors, line.noise, self.off)
+        return Carried(Tangents(*(part[:, :asked] for part in parts)), q, v, lam, errors, self.off)
 
     def _rates(self) -> np.ndarray:
         """(8 d + 1, 2 f) rates of the motion itself at the nodes, in coordinates of the basis."""

@@ -71,9 +71,8 @@ class Carried:
     """(8 d + 1, n + k, c), as rates, y'."""
     rates: np.ndarray
     errors: np.ndarray
-    """(d, 2) what each step adds, and what it leaves out inside alone, as parts of the largest y so far."""
-    noise: float
-    """Part of the last y that errors of the motion leave unknown, however short steps are."""
+    """(d, 3) what each step adds, and what it leaves out inside alone, as parts of the largest y so far; and the part
+    of the last y that errors of the motion leave unknown."""
 
     def at(self, times: np.ndarray) -> np.ndarray:
         """(R, n + k, c) y at times (R,) (s)."""
@@ -92,7 +91,7 @@ class Carried:
         edges = self.t[::NODES]
         first = np.searchsorted(times, edges[:-1], side="right")
         inside = np.searchsorted(times, edges[1:], side="left") > first
-        return np.where(inside[:, None], self.errors, self.errors * [1.0, 0.0])
+        return np.where(inside[:, None], self.errors, self.errors * [1.0, 0.0, 1.0])
 
 
 class SameRates(NamedTuple):
@@ -163,12 +162,13 @@ def carried(
         out, rates = (np.ascontiguousarray(part[..., :c]) for part in (out, rates))
     largest = np.maximum.accumulate(np.abs(out), axis=0)[NODES::NODES]
     per = 1.0 / np.maximum(largest, slight)
-    errors = np.zeros((steps, 2))
+    errors = np.zeros((steps, 3))
     estimate(t, rates, per, HALFWAY, LAST, errors)
     last = np.linalg.norm(np.maximum(np.abs(out[-1, -k:]), slight[-k:]), axis=0)
-    removed = removed[corrected if by_time is None else passing]
-    noise = np.linalg.norm(removed[..., 0] / np.maximum(removed[..., 1], last), axis=0).max(initial=0.0)
-    return Carried(t, out, rates, errors, float(noise))
+    is_noisy = corrected if by_time is None else passing
+    parts = removed[is_noisy]
+    errors[is_noisy, 2] = (parts[..., 0] / np.maximum(parts[..., 1], last)).max(axis=1, initial=0.0)
+    return Carried(t, out, rates, errors)
 
 
 def _fast_steps(t: np.ndarray, flow: np.ndarray, k: int) -> np.ndarray:
@@ -433,7 +433,10 @@ def march(kinematics, t, a, b, weights, flow, corrected, matrix, side, removed, 
 
 @kernel
 def estimate(t, rates, per, halfway, last, errors):
-    """Fill errors (d, 2) of steps from rates (8 d + 1, k, c); ``per`` (d, k, c): 1 / the largest values so far."""
+    """Fill the first two of errors (d, 3) of steps from rates (8 d + 1, k, c).
+
+    ``per`` (d, k, c): 1 / the largest values so far.
+    """
     for step in range(errors.shape[0]):
         first = NODES * step
         middle = 0.0

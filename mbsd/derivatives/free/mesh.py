@@ -6,6 +6,7 @@ fourth Legendre coefficients tell how fast they fall, and so how large the eight
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 
 import numpy as np
@@ -123,9 +124,9 @@ def first_edges(ends: tuple[float, float], met: np.ndarray, t: np.ndarray, longe
 def refined(edges: np.ndarray, errors: np.ndarray, enough: float) -> np.ndarray:
     """Edges of shorter steps where these add more than their share of ``enough``, or leave out more inside.
 
-    errors (d, 2): what steps add, and what they leave out inside.
+    errors (d, 3): what steps add, what they leave out inside, and what errors of the motion leave unknown.
     """
-    shares = np.array([enough / len(errors), enough])
+    shares = np.array([enough / len(errors), enough, enough / math.sqrt(len(errors))])
     out = [edges[:1]]
     for (a, b), worst in zip(pairwise(edges), (errors / shares).max(axis=1), strict=True):
         parts = 1 if worst <= 1.0 else 2 if worst <= 64.0 else 4 if worst <= FAR_OFF else 16

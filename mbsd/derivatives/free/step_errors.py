@@ -20,14 +20,16 @@ OF_KINKS = 0.05
 """Part of these where contacts by penalty have kinks, of which the estimate knows too little."""
 MOST, PATIENCE = 14, 6
 """So often at most, and so often without less error: a toggle of 1e-7 s is found by parts, a jump never."""
+VAIN = 3
+"""So often shorter steps may leave as much noise: then it is the motion's own."""
 DOUBTFUL = 1e-3
 """Error that is warned of."""
 MOST_STEPS = 20_000
 """Steps at most."""
 
 Result = TypeVar("Result")
-Way = Callable[[np.ndarray], tuple[np.ndarray, float, Callable[[], Result]]]
-"""Gives the errors (d, 2) of steps between edges, the part that errors of the motion leave unknown, what finishes."""
+Way = Callable[[np.ndarray], tuple[np.ndarray, Callable[[], Result]]]
+"""Gives the errors (d, 3) of steps between edges (linear_motion.py), and what finishes."""
 Finish = Callable[[], Tangents | None]
 """Evaluates tangents at the outputs of which they are asked; None where that gave the slopes themselves."""
 
@@ -39,15 +41,22 @@ def refined_to_error(way: Way[Result], edges: np.ndarray, kinked: bool, name: st
     """
     before = error = 0.0
     least, waited = np.inf, 0
+    quietest, vain = np.inf, 0
     part = OF_KINKS if kinked else 1.0
     for turn in range(MOST):
-        errors, noise, finish = way(edges)
+        errors, finish = way(edges)
         before, error = error, float(errors[:, 0].sum() + errors[:, 1].max())
+        noise = float(np.linalg.norm(errors[:, 2]))
+        vain = 0 if noise < 0.5 * quietest else vain + 1
+        quietest = min(quietest, noise)
         waited = 0 if error < 0.5 * least else waited + 1
         least = min(least, error)
         is_last = turn == MOST - 1 or waited == PATIENCE - 1
-        if error <= part * ENOUGH or len(errors) != len(edges) - 1 or is_last:
+        helps = noise > part * ENOUGH and vain < VAIN
+        if (error <= part * ENOUGH and not helps) or len(errors) != len(edges) - 1 or is_last:
             break
+        if not helps:
+            errors = errors * [1.0, 1.0, 0.0]
         finer = refined(edges, errors, part * AIMED)
         if len(finer) > MOST_STEPS:
             break

@@ -88,6 +88,9 @@ CLOSE, CLOSE_RATE = 1e-10, 1e-9
 """Errors allowed of cosines and sines, and of rates of turning, as a part of w."""
 KEPT = carried.SIN + 1
 """Columns of EmbeddingScratch.body that are continued."""
+CLOSEST = 1e-8
+"""Squared sine above which the closed form stands where no poses beside are clear: there the motion itself bends as
+sharply as the pose is close, so that rounding stays a small part of its rates."""
 SLIGHT = 1e-8
 """Turn (rad) below which a body moves straight on."""
 
@@ -295,7 +298,10 @@ def _solve_alone(dyn, scratch, e, usual):
         if b > 0:
             _copy(base[b], scratch.joined_rate[2, b], carried.TURNS + columns)
     if not joined:
-        return _solve(dyn, scratch, e)
+        dyn.number[e, carried.AVOID] = CLOSEST
+        status = _solve(dyn, scratch, e)
+        dyn.number[e, carried.AVOID] = FLOOR
+        return status
     for b in bodies[: SECOND + 1]:
         if b > 0:
             _copy(scratch.body[b], scratch.joined_body[0, b], KEPT)
@@ -304,6 +310,7 @@ def _solve_alone(dyn, scratch, e, usual):
             for j in range(columns):
                 turning += scratch.rate[b, 3 * j + 2] * coordinate[j, carried.SPEED]
             scratch.body[b, carried.OMEGA] = turning
+    dyn.number[e, carried.SINE] = 0.0  # not that of the last pose beside, so that the next pose asks for its branch
     return carried.SOLVED
 
 
@@ -334,8 +341,11 @@ def bridge(dyn, scratch, t):
             way *= 0.5
         if scratch.drive.shape[0] > 1:
             evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
-    if not joined:
-        number = dyn.number
+    number = dyn.number
+    if joined:
+        for e in range(number.shape[0]):
+            number[e, carried.SINE] = 0.0
+    else:
         for e in range(number.shape[0]):
             usual = number[e, carried.AVOID]
             number[e, carried.AVOID] = FLOOR

@@ -55,8 +55,8 @@ STABILITY = 0.1, 30.0
 """h lambda of explicit methods whose steps are limited by stability."""
 NEEDLESS = 1e-5
 """Part of the time in which bodies move by the mechanism's size: shorter steps are not what the motion needs."""
-HOPELESS = 1e9
-"""Steps of that sort that no one waits for."""
+HOPELESS = 1e12
+"""Steps of that sort, those taken times those left, that no one waits for: the longer they last, the less they pass."""
 CREEPING = 1.2
 """Least power p by which steps that creep shorten."""
 NEVER = 0.1
@@ -96,10 +96,10 @@ def creeps_to(looks: list[Look], time: float, end: float) -> float | None:
     return time + ahead if ahead < NEVER * (end - time) else None
 
 
-def diagnosis(run: Run, state: State, h: float, left: float, ends: float | None = None) -> str | None:
+def diagnosis(run: Run, state: State, h: float, taken: int, left: float, ends: float | None = None) -> str | None:
     """Return the cause of steps of h (s), with the remedy, or None if the run may go on.
 
-    ``left`` steps remain, or any number where they creep towards a time that ``ends`` them (s).
+    ``taken`` steps were as short and ``left`` remain, or any number where they creep towards ``ends`` (s).
     """
     cause = jump(run, state, h)
     slope = slope_at(run, state)
@@ -114,7 +114,7 @@ def diagnosis(run: Run, state: State, h: float, left: float, ends: float | None 
                 f"steps shorten towards t = {ends:.6g} s, and no force jumps or is stiff there. Look for a pose that "
                 "is singular, or loosen the tolerance."
             )
-        if left < HOPELESS:
+        if taken * left < HOPELESS:
             return None
         return "no force jumps or is stiff there. Look for a pose that is singular, or loosen the tolerance."
     joint = stiff.force.params.get("joint")

@@ -43,6 +43,8 @@ from mbsd.kinematics.groups.tables import BRANCH
 
 PASSING = 6
 """Steps in reference coordinates before independent ones are tried again; doubled while they do not lead away."""
+SHARE = 8
+"""Steps so far, of one passage, for each one until the next trial, for a trial costs as much as a hundred steps."""
 AWAY = 1e-2
 """Part of the longest step by which passing must advance before it counts as having led away."""
 BEYOND = 0.05
@@ -170,8 +172,9 @@ class IndependentSteps:
         self._start_anew()
         near = self.whole.clock[TIME] - self._passed < AWAY * self.settings.longest
         self._passing = min(2 * self._passing, self.run.steps_at_once) if near else PASSING
+        steps = taken = self._passing
         while True:
-            status = advance(self.run, self.whole, out, end, self._passing)
+            status = advance(self.run, self.whole, out, end, steps)
             self._passed = float(self.whole.clock[TIME])
             if status == run_state.REACHED:
                 return False
@@ -180,6 +183,8 @@ class IndependentSteps:
                 self._enter(made)
                 return True
             pace.note()
+            steps = min(max(self._passing, taken // SHARE), self.run.steps_at_once)
+            taken += steps
 
 
 NEAR = 0.05

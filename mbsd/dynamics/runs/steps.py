@@ -77,7 +77,8 @@ class Pace:
         before, self._growth = self._growth, growth_of(self.run, state)
         self._looks.append(Look(self._short, advance))
         ends = creeps_to(self._looks, at, self.end)
-        cause = runaway(self.run, state, before, self._growth) or diagnosis(self.run, state, advance, left, ends)
+        cause = runaway(self.run, state, before, self._growth)
+        cause = cause or diagnosis(self.run, state, advance, self._short, left, ends)
         if cause is not None:
             raise SimulationError(
                 f"{self.run.ready.packed.name}: {self.run.method.name} no longer advances at t = {at:.6g} s: the last "

@@ -18,12 +18,10 @@ from mbsd.kinematics.newton import BRANCH_DOUBT, DONE
 from mbsd.kinematics.steps import Steps
 from mbsd.kinematics.sweep import sweep_times
 from mbsd.spatial.arrays.packing import Packed
-from mbsd.spatial.equations.evaluation import wrenches_along
 from mbsd.spatial.kinematics import newton
 from mbsd.spatial.kinematics.close import gap_in_words
 from mbsd.spatial.kinematics.mobility import better_rows_at
 from mbsd.spatial.kinematics.prepared import Prepared, planned, prepare
-from mbsd.spatial.kinematics.sharing import least_norm
 from mbsd.spatial.model.mechanism import Model
 from mbsd.spatial.results.solution import Solution
 
@@ -39,11 +37,6 @@ def sweep(m: Model, duration: float | None, steps: int, times: Sequence[float] |
     same_fields = ready.packed
     taken = Steps(same_fields, grid)
     motion = _march(ready, taken)
-    if ready.mobility.redundant_rows:
-        lam = least_norm(ready.packed, ready.laws, motion)
-        wrench = np.zeros((len(motion.times), len(m.joints), 6))
-        wrenches_along(ready.packed.system, motion.drives, motion.q, ready.packed.ws, lam, wrench)
-        motion = motion._replace(lam=lam, wrench=wrench)
     return Solution(
         m, ready.packed, motion, taken.wanted, ready.mobility, ready.laws, dict(m.starts), inserted_steps=taken.inserted
     )

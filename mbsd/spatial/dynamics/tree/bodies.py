@@ -15,7 +15,7 @@ Source: Featherstone 2008, Rigid Body Dynamics Algorithms, ch. 7, 8.
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import internal
+from mbsd.compiling.jit import inlined, internal
 from mbsd.spatial.dynamics.tree.arrays import (
     AXIS_OF,
     COUNT,
@@ -93,25 +93,68 @@ def _begin_inertia(inertia, mass, moment, m, r):
     inertia[2, 4] = inertia[4, 2] = x
 
 
+@inlined
+def _times(s, at, u0, u1, u2, u3, u4, u5):
+    """Return s[at : at + 6] . u."""
+    return s[at] * u0 + s[at + 1] * u1 + s[at + 2] * u2 + (s[at + 3] * u3 + s[at + 4] * u4 + s[at + 5] * u5)
+
+
+@inlined
+def _down(m, c, s0, s1, s2, s3, s4, s5):
+    """Return a column of a matrix (6, 6) times s."""
+    return m[0, c] * s0 + m[1, c] * s1 + m[2, c] * s2 + m[3, c] * s3 + m[4, c] * s4 + m[5, c] * s5
+
+
+@inlined
+def _take(row, part, u0, u1, u2, u3, u4, u5):
+    """Take u, ``part`` times, from row[:6]."""
+    row[0] -= part * u0
+    row[1] -= part * u1
+    row[2] -= part * u2
+    row[3] -= part * u3
+    row[4] -= part * u4
+    row[5] -= part * u5
+
+
 @internal
-def _take_column(inertia, s, keeps):
-    """Fill U and 1 / D of a column, and take its freedom from an inertia, if it ``keeps`` on; returns what D keeps."""
-    largest = 0.0
-    d = 0.0
-    for i in range(6):
-        total = 0.0
-        for j in range(6):
-            total += inertia[i, j] * s[AXIS_OF + j]
-        s[SHARE + i] = total
-        d += s[AXIS_OF + i] * total
-    inverse = 1.0 / d
-    s[INVERSE] = inverse
-    if keeps:
-        for i in range(6):
-            part = s[SHARE + i] * inverse
-            for j in range(6):
-                inertia[i, j] -= part * s[SHARE + j]
-    return largest
+def _share_columns(inertia, columns):
+    """Fill U and 1 / D of the columns of a joint."""
+    for k in range(columns.shape[0]):
+        s = columns[k]
+        s0, s1, s2, s3, s4, s5 = s[0], s[1], s[2], s[3], s[4], s[5]
+        u0 = _down(inertia, 0, s0, s1, s2, s3, s4, s5)
+        u1 = _down(inertia, 1, s0, s1, s2, s3, s4, s5)
+        u2 = _down(inertia, 2, s0, s1, s2, s3, s4, s5)
+        u3 = _down(inertia, 3, s0, s1, s2, s3, s4, s5)
+        u4 = _down(inertia, 4, s0, s1, s2, s3, s4, s5)
+        u5 = _down(inertia, 5, s0, s1, s2, s3, s4, s5)
+        s[SHARE], s[SHARE + 1], s[SHARE + 2], s[SHARE + 3], s[SHARE + 4], s[SHARE + 5] = u0, u1, u2, u3, u4, u5
+    for k in range(columns.shape[0] - 1, -1, -1):
+        s = columns[k]
+        u0, u1, u2, u3, u4, u5 = s[SHARE], s[SHARE + 1], s[SHARE + 2], s[SHARE + 3], s[SHARE + 4], s[SHARE + 5]
+        inverse = 1.0 / _times(s, AXIS_OF, u0, u1, u2, u3, u4, u5)
+        s[INVERSE] = inverse
+        for j in range(k):
+            part = inverse * _times(columns[j], AXIS_OF, u0, u1, u2, u3, u4, u5)
+            _take(columns[j, SHARE : SHARE + 6], part, u0, u1, u2, u3, u4, u5)
+
+
+@internal
+def _pass_on(inertia, columns, parent):
+    """Add what a joint passes on of an inertia (6, 6) to that of the parent."""
+    for r in range(6):
+        m = inertia[r]
+        m0, m1, m2, m3, m4, m5 = m[0], m[1], m[2], m[3], m[4], m[5]
+        for k in range(columns.shape[0]):
+            s = columns[k]
+            part = s[SHARE + r] * s[INVERSE]
+            m0 -= part * s[SHARE]
+            m1 -= part * s[SHARE + 1]
+            m2 -= part * s[SHARE + 2]
+            m3 -= part * s[SHARE + 3]
+            m4 -= part * s[SHARE + 4]
+            m5 -= part * s[SHARE + 5]
+        _take(parent[r], -1.0, m0, m1, m2, m3, m4, m5)
 
 
 @internal
@@ -127,12 +170,10 @@ def factor_tree(tree, work, system, ws):
         b = tree.order[i]
         parent = tree.index[b, PARENT]
         first = tree.index[b, FIRST_Z] - 3
-        for k in range(first + tree.index[b, COUNT] - 1, first - 1, -1):
-            _take_column(inertia[b], work.column[k], parent > 0 or k > first)
+        columns = work.column[first : first + tree.index[b, COUNT]]
+        _share_columns(inertia[b], columns)
         if parent > 0:
-            for r in range(6):
-                for c in range(6):
-                    inertia[parent, r, c] += inertia[b, r, c]
+            _pass_on(inertia[b], columns, inertia[parent])
 
 
 @internal
@@ -143,18 +184,21 @@ def gather(tree, work):
         b = tree.order[i]
         parent = tree.index[b, PARENT]
         first = tree.index[b, FIRST_Z] - 3
+        p = body[b, PUSH : PUSH + 6]
+        p0, p1, p2, p3, p4, p5 = p[0], p[1], p[2], p[3], p[4], p[5]
         for k in range(first + tree.index[b, COUNT] - 1, first - 1, -1):
             s = work.column[k]
-            u = 0.0
-            for j in range(6):
-                u -= s[AXIS_OF + j] * body[b, PUSH + j]
+            u = -_times(s, AXIS_OF, p0, p1, p2, p3, p4, p5)
             s[LEFT] = u
             u *= s[INVERSE]
-            for j in range(6):
-                body[b, PUSH + j] += u * s[SHARE + j]
+            p0 += u * s[SHARE]
+            p1 += u * s[SHARE + 1]
+            p2 += u * s[SHARE + 2]
+            p3 += u * s[SHARE + 3]
+            p4 += u * s[SHARE + 4]
+            p5 += u * s[SHARE + 5]
         if parent > 0:
-            for j in range(6):
-                body[parent, PUSH + j] += body[b, PUSH + j]
+            _take(body[parent, PUSH : PUSH + 6], -1.0, p0, p1, p2, p3, p4, p5)
 
 
 @internal
@@ -165,17 +209,22 @@ def release(tree, work, side, a):
         b = tree.order[i]
         parent = tree.index[b, PARENT]
         first = tree.index[b, FIRST_Z]
-        for j in range(6):
-            body[b, MOTION + j] = body[parent, MOTION + j] if parent > 0 else 0.0
+        m0 = m1 = m2 = m3 = m4 = m5 = 0.0
+        if parent > 0:
+            m = body[parent, MOTION : MOTION + 6]
+            m0, m1, m2, m3, m4, m5 = m[0], m[1], m[2], m[3], m[4], m[5]
         for k in range(first, first + tree.index[b, COUNT]):
             s = work.column[k - 3]
-            total = s[LEFT + side]
-            for j in range(6):
-                total -= s[SHARE + j] * body[b, MOTION + j]
-            total *= s[INVERSE]
-            a[k] = total
-            for j in range(6):
-                body[b, MOTION + j] += s[AXIS_OF + j] * total
+            gain = (s[LEFT + side] - _times(s, SHARE, m0, m1, m2, m3, m4, m5)) * s[INVERSE]
+            a[k] = gain
+            m0 += gain * s[0]
+            m1 += gain * s[1]
+            m2 += gain * s[2]
+            m3 += gain * s[3]
+            m4 += gain * s[4]
+            m5 += gain * s[5]
+        m = body[b, MOTION : MOTION + 6]
+        m[0], m[1], m[2], m[3], m[4], m[5] = m0, m1, m2, m3, m4, m5
 
 
 @internal
@@ -206,15 +255,18 @@ def spread_row(tree, work, system, ws, row):
         b = tree.path[n]
         parent = tree.index[b, PARENT]
         first = tree.index[b, FIRST_Z] - 3
+        f = body[b, FLOW : FLOW + 6]
+        f0, f1, f2, f3, f4, f5 = f[0], f[1], f[2], f[3], f[4], f[5]
         for k in range(first + tree.index[b, COUNT] - 1, first - 1, -1):
             s = work.column[k]
-            total = y[k]
-            for j in range(6):
-                total += s[AXIS_OF + j] * body[b, FLOW + j]
-            y[k] = total
-            total *= s[INVERSE]
-            for j in range(6):
-                body[b, FLOW + j] -= total * s[SHARE + j]
+            part = y[k] + _times(s, AXIS_OF, f0, f1, f2, f3, f4, f5)
+            y[k] = part
+            part *= s[INVERSE]
+            f0 -= part * s[SHARE]
+            f1 -= part * s[SHARE + 1]
+            f2 -= part * s[SHARE + 2]
+            f3 -= part * s[SHARE + 3]
+            f4 -= part * s[SHARE + 4]
+            f5 -= part * s[SHARE + 5]
         if parent > 0:
-            for j in range(6):
-                body[parent, FLOW + j] += body[b, FLOW + j]
+            _take(body[parent, FLOW : FLOW + 6], -1.0, f0, f1, f2, f3, f4, f5)

@@ -70,6 +70,7 @@ class TreeCoordinates:
             work=self.work,
             envelope=Envelope(np.arange(used), np.zeros(used, np.int64), *np.zeros((2, 0, 5), np.int64)),
             factors=Factors(np.zeros((used, used)), np.zeros(used), np.zeros((2, used))),
+            chosen=np.ones(used),
             per_size=per_size,
             pushed=np.zeros(rows),
             limit=np.array([LIMIT if used < held else 0.0]),

@@ -23,7 +23,7 @@ from mbsd.spatial.dynamics.envelope import solve
 from mbsd.spatial.dynamics.tree.arrays import COUNT, FIRST_Q, FIRST_Z, FREE, KIND, LEFT, MOTION, SPHERICAL
 from mbsd.spatial.dynamics.tree.bodies import factor_tree, gather, release, weigh
 from mbsd.spatial.dynamics.tree.places import at_centre, move_tree, place_tree
-from mbsd.spatial.dynamics.tree.rows import answer_rows, choose_rows, factor_rows, hold_rows, measure_rates
+from mbsd.spatial.dynamics.tree.rows import answer_rows, factor_rows, hold_rows, measure_rates, renew_rows
 from mbsd.spatial.equations.evaluation import evaluate_gamma, evaluate_nu, evaluate_rows
 from mbsd.spatial.equations.forces import apply_forces
 
@@ -53,6 +53,8 @@ class TreeDynamics(NamedTuple):
     envelope: Any
     """mbsd.spatial.dynamics.envelope.Envelope"""
     factors: Any
+    chosen: Any
+    """(n,) pivots of the rows in use when they were chosen."""
     per_size: Any
     """(3 + nq,) what makes rates dimensionless: 1 / size of slides, 1 of turns."""
     pushed: Any
@@ -212,7 +214,7 @@ def settle(dyn, scratch, t, state, fresh):
         ws.guess[n] = ws.turn[n]
     if narrow:
         factor_tree(dyn.tree, dyn.work, dyn.system, ws)
-        if choose_rows(dyn, ws):
+        if renew_rows(dyn, ws):
             dyn.limit[0] = LIMIT
         else:
             dyn.limit[0] *= 0.1
@@ -262,7 +264,7 @@ def begin(dyn, ws, q, drive):
     """Fill pose and columns at coordinates q (3 + nq,), and choose the rows in use; for callers in Python."""
     _measure(dyn, ws, q, drive)
     factor_tree(dyn.tree, dyn.work, dyn.system, ws)
-    choose_rows(dyn, ws)
+    renew_rows(dyn, ws)
 
 
 add_formulation(

@@ -191,73 +191,80 @@ def place_tree(tree, work, q, ws):
 
 
 @inlined
-def _bend(body, b, s0, s1, s2, s3, s4, s5):
-    """Add V x (s0 .. s5), the motion of a body across another, to its acceleration."""
-    w0, w1, w2 = body[b, VELOCITY], body[b, VELOCITY + 1], body[b, VELOCITY + 2]
-    v0, v1, v2 = body[b, VELOCITY + 3], body[b, VELOCITY + 4], body[b, VELOCITY + 5]
-    body[b, MOTION] += w1 * s2 - w2 * s1
-    body[b, MOTION + 1] += w2 * s0 - w0 * s2
-    body[b, MOTION + 2] += w0 * s1 - w1 * s0
-    body[b, MOTION + 3] += w1 * s5 - w2 * s4 + v1 * s2 - v2 * s1
-    body[b, MOTION + 4] += w2 * s3 - w0 * s5 + v2 * s0 - v0 * s2
-    body[b, MOTION + 5] += w0 * s4 - w1 * s3 + v0 * s1 - v1 * s0
+def _across(w, v, u, s):
+    """Return w x s + v x u, the second half of (w, v) x (u, s)."""
+    return (
+        w[1] * s[2] - w[2] * s[1] + v[1] * u[2] - v[2] * u[1],
+        w[2] * s[0] - w[0] * s[2] + v[2] * u[0] - v[0] * u[2],
+        w[0] * s[1] - w[1] * s[0] + v[0] * u[1] - v[1] * u[0],
+    )
+
+
+@inlined
+def _add(a, b):
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+@inlined
+def _cross(a, b):
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@inlined
+def _scaled(s, at, z):
+    return s[at] * z, s[at + 1] * z, s[at + 2] * z
+
+
+@inlined
+def _set(out, at, a, b):
+    """Fill out[at : at + 6] with two vectors."""
+    out[at] = a[0]
+    out[at + 1] = a[1]
+    out[at + 2] = a[2]
+    out[at + 3] = b[0]
+    out[at + 4] = b[1]
+    out[at + 5] = b[2]
 
 
 @internal
 def at_centre(body, b, part, out, d):
     """Fill out[d : d + 6] with the velocity of a centre of mass and w, of a motion in columns ``part`` on."""
-    x, y, z = body[b, REACH], body[b, REACH + 1], body[b, REACH + 2]
-    w0, w1, w2 = body[b, part], body[b, part + 1], body[b, part + 2]
-    out[d] = body[b, part + 3] + w1 * z - w2 * y
-    out[d + 1] = body[b, part + 4] + w2 * x - w0 * z
-    out[d + 2] = body[b, part + 5] + w0 * y - w1 * x
-    out[d + 3] = w0
-    out[d + 4] = w1
-    out[d + 5] = w2
+    w = (body[b, part], body[b, part + 1], body[b, part + 2])
+    v = (body[b, part + 3], body[b, part + 4], body[b, part + 5])
+    _set(out, d, _add(v, _cross(w, (body[b, REACH], body[b, REACH + 1], body[b, REACH + 2]))), w)
 
 
 @internal
-def move_tree(tree, work, v):
-    """Fill motions of bodies at rates v (3 + nz,), and their accelerations while these stay."""
+def move_tree(tree, work, rates):
+    """Fill motions of bodies at rates (3 + nz,) in the world, and their accelerations while these stay."""
     body = work.body
+    none = (0.0, 0.0, 0.0)
     for i in range(tree.order.shape[0]):
         b = tree.order[i]
         parent = tree.index[b, PARENT]
-        first = tree.index[b, FIRST_Z]
+        first = tree.index[b, FIRST_Z] - 3
         count = tree.index[b, COUNT]
-        kind = tree.index[b, KIND]
-        for k in range(6):
-            body[b, VELOCITY + k] = body[parent, VELOCITY + k] if parent > 0 else 0.0
-            body[b, MOTION + k] = body[parent, MOTION + k] if parent > 0 else 0.0
-        single = count - 3 if kind <= SPHERICAL else count
-        for j in range(first, first + single):
-            s = work.column[j - 3]
-            z = v[j]
-            _bend(body, b, s[0] * z, s[1] * z, s[2] * z, s[3] * z, s[4] * z, s[5] * z)
-            for k in range(6):
-                body[b, VELOCITY + k] += s[k] * z
+        w, v, x, y = none, none, none, none
+        if parent > 0:
+            m = body[parent]
+            w, v = (m[0], m[1], m[2]), (m[3], m[4], m[5])
+            x, y = (m[6], m[7], m[8]), (m[9], m[10], m[11])
+        single = count - 3 if tree.index[b, KIND] <= SPHERICAL else count
+        for k in range(first, first + single):
+            s = work.column[k]
+            u, t = _scaled(s, 0, rates[3 + k]), _scaled(s, 3, rates[3 + k])
+            x, y = _add(x, _cross(w, u)), _add(y, _across(w, v, u, t))
+            w, v = _add(w, u), _add(v, t)
         if single < count:
-            j = first + single
-            s0 = s1 = s2 = s3 = s4 = s5 = 0.0
-            for k in range(3):
-                s = work.column[j - 3 + k]
-                z = v[j + k]
-                s0 += s[0] * z
-                s1 += s[1] * z
-                s2 += s[2] * z
-                s3 += s[3] * z
-                s4 += s[4] * z
-                s5 += s[5] * z
-            _bend(body, b, s0, s1, s2, s3, s4, s5)
-            body[b, VELOCITY] += s0
-            body[b, VELOCITY + 1] += s1
-            body[b, VELOCITY + 2] += s2
-            body[b, VELOCITY + 3] += s3
-            body[b, VELOCITY + 4] += s4
-            body[b, VELOCITY + 5] += s5
-        c = 6 * b - 3
-        at_centre(body, b, VELOCITY, work.rate, c)
-        at_centre(body, b, MOTION, work.bend, c)
-        r = work.rate
-        for k in range(3):  # w x v of the centre
-            work.bend[c + k] += r[c + 3 + (k + 1) % 3] * r[c + (k + 2) % 3] - r[c + 3 + (k + 2) % 3] * r[c + (k + 1) % 3]
+            u, t = none, none
+            for k in range(first + single, first + count):
+                s = work.column[k]
+                u, t = _add(u, _scaled(s, 0, rates[3 + k])), _add(t, _scaled(s, 3, rates[3 + k]))
+            x, y = _add(x, _cross(w, u)), _add(y, _across(w, v, u, t))
+            w, v = _add(w, u), _add(v, t)
+        _set(body[b], VELOCITY, w, v)
+        _set(body[b], MOTION, x, y)
+        reach = (body[b, REACH], body[b, REACH + 1], body[b, REACH + 2])
+        centre = _add(v, _cross(w, reach))
+        _set(work.rate, 6 * b - 3, centre, w)
+        _set(work.bend, 6 * b - 3, _add(_add(y, _cross(x, reach)), _cross(w, centre)), x)

@@ -1,7 +1,9 @@
 """Rows of cut joints in a tree: their Schur complement, and which of those that repeat each other are in use.
 
-Rows are chosen by pivoted Gram-Schmidt on D^-1/2 Y, the one next that keeps most of its own length. So units of rows do
-not matter, and no row in use depends on the others more than it must.
+Rows are chosen by pivoted Gram-Schmidt on D^-1/2 Y: next is the one of which most is left, compared with its length if
+its bodies were free. So units do not matter, no row in use depends on others more than it must, and none is one that
+the tree holds. They are looked at again where a pivot is a small part of its row, or of what it was when they were
+chosen: then the row turns away from the freedoms that are left.
 """
 
 from __future__ import annotations
@@ -10,7 +12,7 @@ import math
 
 from mbsd.compiling.jit import internal, lazy
 from mbsd.spatial.dynamics.envelope import decompose, solve
-from mbsd.spatial.dynamics.tree.arrays import INVERSE, LEFT
+from mbsd.spatial.dynamics.tree.arrays import COUNT, FIRST_Z, INVERSE, LEFT
 from mbsd.spatial.dynamics.tree.bodies import spread_row
 from mbsd.spatial.equations.forces import along_row
 
@@ -20,21 +22,44 @@ NOTHING = 1e-20
 
 @internal
 def factor_rows(dyn, ws):
-    """Factor S of the rows in use; returns the least part of a row that is its own."""
+    """Factor S of the rows in use; returns the least part of a row that is its own, or of its first pivot."""
     env = dyn.envelope
+    tree = dyn.tree
     low = dyn.factors.low
     spread = dyn.work.spread
     column = dyn.work.column
     for r in range(env.rows.shape[0]):
         row = env.rows[r]
-        spread_row(dyn.tree, dyn.work, dyn.system, ws, row)
+        spread_row(tree, dyn.work, dyn.system, ws, row)
         for c in range(env.first[r], r + 1):
             other = env.rows[c]
             total = 0.0
-            for k in range(column.shape[0]):
-                total += spread[row, k] * column[k, INVERSE] * spread[other, k]
+            for n in range(tree.begin[row], tree.begin[row + 1]):
+                b = tree.path[n]
+                k = tree.index[b, FIRST_Z] - 3
+                for j in range(k, k + tree.index[b, COUNT]):
+                    total += spread[row, j] * column[j, INVERSE] * spread[other, j]
             low[r, c] = total
-    return decompose(env, dyn.factors)
+    margin = decompose(env, dyn.factors)
+    for r in range(env.rows.shape[0]):
+        part = dyn.factors.pivot[r] / dyn.chosen[r]
+        if not part >= margin:
+            margin = part
+    return margin
+
+
+@internal
+def _order_rows(tree, env):
+    """Fill where each row in use begins to meet those before it: with a body of the tree in common."""
+    for r in range(env.rows.shape[0]):
+        row = env.rows[r]
+        env.first[r] = r
+        for c in range(r - 1, -1, -1):
+            other = env.rows[c]
+            for n in range(tree.begin[row], tree.begin[row + 1]):
+                for i in range(tree.begin[other], tree.begin[other + 1]):
+                    if tree.path[n] == tree.path[i]:
+                        env.first[r] = c
 
 
 @internal
@@ -95,7 +120,7 @@ def _free_square(system, ws, row):
     return total
 
 
-@lazy(bool)
+@internal
 def choose_rows(dyn, ws):
     """Choose the rows in use at a pose whose columns are factored; returns whether they are other ones than before."""
     work = dyn.work
@@ -109,7 +134,8 @@ def choose_rows(dyn, ws):
         for k in range(y.shape[1]):
             y[r, k] *= math.sqrt(work.column[k, INVERSE])
             square += y[r, k] * y[r, k]
-        own[0, r] = square if square > NOTHING * _free_square(dyn.system, ws, r) else 0.0
+        free = max(square, _free_square(dyn.system, ws, r))
+        own[0, r] = free if square > NOTHING * free else 0.0
         own[1, r] = square
     for n in range(used.shape[0]):
         best = -1
@@ -142,4 +168,15 @@ def choose_rows(dyn, ws):
                 changed = True
                 used[n] = r
             n += 1
+    _order_rows(dyn.tree, dyn.envelope)
+    return changed
+
+
+@lazy(bool)
+def renew_rows(dyn, ws):
+    """Choose rows at a pose whose columns are factored, and keep their pivots; returns whether they are other ones."""
+    changed = choose_rows(dyn, ws)
+    factor_rows(dyn, ws)
+    for r in range(dyn.chosen.shape[0]):
+        dyn.chosen[r] = dyn.factors.pivot[r]
     return changed

@@ -68,7 +68,8 @@ class Mechanism(Building):
         ``steps`` equal output steps over ``duration`` seconds, both ends included; ``times`` (s), rising, replaces
         both. ``tolerance`` is relative to the mechanism's size, to 1 rad, and to speeds. ``formulation``: "tree"
         integrates the turns and slides of a spanning tree of joints and keeps the others as rows, "reference" all
-        coordinates; by default the one that is usually quicker. Raises MobilityError for a body without mass or inertia, SimulationError where the integration cannot go on.
+        coordinates; by default the one that is usually quicker. Raises MobilityError for a body without mass or
+        inertia, SimulationError where the integration cannot go on.
         """
         from mbsd.spatial.dynamics.simulate import simulate
 

@@ -81,8 +81,15 @@ def test_every_force_acts_alike_in_both_formulations(kind: str) -> None:
 
 @pytest.mark.parametrize(
     "build",
-    [machines.slider_crank, machines.four_link, machines.bennett, machines.sarrus, machines.bricard]
-    + [lambda: machines.hooke_joint(0.6), lambda: machines.hooke_pair(0.4, True)],
+    [
+        machines.slider_crank,
+        machines.four_link,
+        machines.bennett,
+        machines.sarrus,
+        machines.bricard,
+        lambda: machines.hooke_joint(0.6),
+        lambda: machines.hooke_pair(0.4, True),
+    ],
 )
 def test_loops_and_redundant_joints_move_alike(build) -> None:
     tree, reference = both(build(), 0.7)

@@ -15,7 +15,7 @@ WITHIN = 1e-3
 """The first step, as part of one that leads to where forces are not finite."""
 
 SHORTEST = 1e-9
-"""Part of the longest step that the first trial has at least: coordinates near zero say nothing of a motion's length."""
+"""Part of the longest step that the first trial has at least: coordinates near zero tell nothing of a length."""
 
 
 @inlined

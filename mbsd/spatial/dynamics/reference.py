@@ -34,6 +34,11 @@ class ReferenceCoordinates:
         self.y[0] = q
         self.y[1, : len(v)] = _to_bodies(q, v)
 
+    @staticmethod
+    def nanoseconds(packed: Packed) -> float:
+        """Return about what an evaluation takes on one processor (ns); see docs/decisions/space/formulation.md."""
+        return 120.0 * len(packed.bodies) + 210.0 * len(packed.row_joint)
+
     def _best_rows(self, q: np.ndarray) -> np.ndarray:
         """Return rows that are independent and far from each other at q."""
         jac = self.packed.scaled(q)

@@ -92,11 +92,17 @@ class Run:
         self.turns = np.zeros((len(self.grid), len(turns)))
         independent = independent_rows(packed.scaled(q))
         _refuse_superfluous_drivers(packed, independent, self.mobility)
-        repeats = self.mobility.redundant_rows > 0
-        if self.formulation == TREE or (self.formulation == AUTO and prefers_tree(packed)):
-            self.coordinates = TreeCoordinates(self.m, packed, q, begun.v, turns, len(independent))
-        else:
-            self.coordinates = ReferenceCoordinates(packed, q, begun.v, repeats)
+        self.coordinates = self._coordinates(q, begun.v, turns, len(independent))
+
+    def _coordinates(
+        self, q: np.ndarray, v: np.ndarray, turns: np.ndarray, rank: int
+    ) -> TreeCoordinates | ReferenceCoordinates:
+        """Return the coordinates that were asked for, else those that are likely to be quicker."""
+        if self.formulation != REFERENCE:
+            tree = TreeCoordinates(self.m, self.packed, q, v, turns, rank)
+            if self.formulation == TREE or tree.nanoseconds() < ReferenceCoordinates.nanoseconds(self.packed):
+                return tree
+        return ReferenceCoordinates(self.packed, q, v, self.mobility.redundant_rows > 0)
 
     def scratch(self) -> Scratch:
         """Return scratch for a run."""
@@ -168,11 +174,6 @@ class Run:
             self.m, packed, motion, np.ones(count, bool), self.mobility, self.laws, dict(self.m.starts),
             steps=steps, work=out.work, changes=self.changes, formulation=TREE if in_tree else REFERENCE,
         )  # fmt: skip
-
-
-def prefers_tree(packed: Packed) -> bool:
-    """Return True where a spanning tree is the quicker choice of coordinates."""
-    return True
 
 
 def _refuse_superfluous_drivers(packed: Packed, independent: list[int], mobility: Mobility) -> None:

@@ -1,1 +1,1 @@
-"""Relative coordinates of a spanning tree as a formulation of the compiled loop: articulated bodies, rows of cut joints."""
+"""Relative coordinates of a spanning tree, by articulated bodies and the rows of cut joints."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any
 
@@ -79,6 +80,17 @@ class TreeCoordinates:
         begin(dyn, self.ws, self.y[0], drive)
         self._set_rates()
         return dyn
+
+    def nanoseconds(self) -> float:
+        """Return about what an evaluation takes on one processor (ns); see docs/decisions/space/formulation.md."""
+        tree, rates = self.tree, self.tree.index[:, arrays.COUNT]
+        paths = [tree.path[a:b] for a, b in itertools.pairwise(tree.begin[: self.cut.system.held + 1])]
+        columns = [int(rates[path].sum()) for path in paths]
+        meeting = [
+            sum(not set(path).isdisjoint(other) for other in paths[: n + 1]) for n, path in enumerate(map(set, paths))
+        ]
+        rows = sum(130.0 + 15.0 * own + 2.5 * own * pairs for own, pairs in zip(columns, meeting, strict=True))
+        return 160.0 * len(self.links) + 40.0 * self.rates + rows
 
     def allowed(self, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
         """Return absolute and growing tolerances (2, 3 + nq) of the state."""

@@ -168,7 +168,7 @@ def place_tree(tree, work, q, ws):
             _set_turn(column[0], a, x - u, y - v, z - w)
             if kind == UNIVERSAL:
                 _set_turn(column[1], _carry(m, n, OWN_AXIS), x - u, y - v, z - w)
-        if kind == PRISMATIC or kind == CYLINDRICAL:
+        if kind == PRISMATIC or kind == CYLINDRICAL:  # noqa: SIM109 (a tuple costs a comparison of tuples)
             last = tree.index[b, COUNT] - 1
             slide = q[tree.index[b, FIRST_Q] + last]
             for k in range(3):

@@ -137,7 +137,7 @@ def choose_rows(dyn, ws):
         free = max(square, _free_square(dyn.system, ws, r))
         own[0, r] = free if square > NOTHING * free else 0.0
         own[1, r] = square
-    for n in range(used.shape[0]):
+    for _ in range(used.shape[0]):
         best = -1
         most = 0.0
         for r in range(held):

@@ -69,7 +69,7 @@ class Work(NamedTuple):
     body: Any
     """(nb, 30) see VELOCITY."""
     inertia: Any
-    """(nb, 6, 6) of articulated bodies."""
+    """(nb, 21) of articulated bodies; see bodies.py."""
     column: Any
     """(nz, 15) see AXIS_OF."""
     spread: Any
@@ -87,7 +87,7 @@ def work_for(bodies: int, rates: int, rows: int) -> Work:
         rate=np.zeros(6 * bodies - 3),
         bend=np.zeros(6 * bodies - 3),
         body=np.zeros((bodies, 30)),
-        inertia=np.zeros((bodies, 6, 6)),
+        inertia=np.zeros((bodies, 21)),
         column=np.zeros((rates, 15)),
         spread=np.zeros((rows, rates)),
         side=np.zeros((2, rows)),

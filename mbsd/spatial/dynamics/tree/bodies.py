@@ -6,7 +6,8 @@ From the leaves on, of the columns S of each joint, the last first:
 
 and from the root on  z'' = (u - U . A) / D,  A += S z''.  I begins as the inertia of the body, p as the force that it
 needs while rates stay, less what acts on it. So U and D are factors of the mass matrix, M = L D L^T in the order of the
-tree, and u is L^-1 of what is on the right. A row of J is passed down likewise, as a force of its two bodies:
+tree, and u is L^-1 of what is on the right. An inertia is [[A, B], [B^T, C]] in 21 numbers: A and
+C by their lower triangles, then B. A row of J is passed down likewise, as a force of its two bodies:
 
     Y = L^-1 J^T,   S = Y^T D^-1 Y,   S lam = Y^T D^-1 u + J bend - gamma,   u -= Y lam
 
@@ -29,6 +30,7 @@ from mbsd.spatial.dynamics.tree.arrays import (
     REACH,
     SHARE,
 )
+from mbsd.spatial.dynamics.tree.triples import add_part, part_of, plus, scaled, set_part, times
 
 
 @internal
@@ -65,96 +67,93 @@ def weigh(tree, work, system, ws, load):
 
 
 @internal
-def _begin_inertia(inertia, mass, moment, m, r):
-    """Fill the inertia (6, 6) of a body about the origin, its centre at r: [[I, h x], [-h x, m]]."""
+def _begin_inertia(out, mass, moment, m, r):
+    """Fill the inertia (21,) of a body about the origin, its centre at r: A = I + m (r^2 - r r^T), B = m r x, C = m."""
     x, y, z = r[0], r[1], r[2]
-    square = x * x + y * y + z * z
+    square = mass * (x * x + y * y + z * z)
+    at = 0
     for i in range(3):
         for j in range(i + 1):
             value = m[i, 0] * moment[0] * m[j, 0] + m[i, 1] * moment[1] * m[j, 1] + m[i, 2] * moment[2] * m[j, 2]
-            value -= mass * r[i] * r[j]
-            if i == j:
-                value += mass * square
-            inertia[i, j] = value
-            inertia[j, i] = value
-            inertia[3 + i, 3 + j] = 0.0
-            inertia[3 + j, 3 + i] = 0.0
-        inertia[3 + i, 3 + i] = mass
-        inertia[i, 3 + i] = 0.0
-        inertia[3 + i, i] = 0.0
-    x *= mass
-    y *= mass
-    z *= mass
-    inertia[0, 4] = inertia[4, 0] = -z
-    inertia[0, 5] = inertia[5, 0] = y
-    inertia[1, 3] = inertia[3, 1] = z
-    inertia[1, 5] = inertia[5, 1] = -x
-    inertia[2, 3] = inertia[3, 2] = -y
-    inertia[2, 4] = inertia[4, 2] = x
+            out[at] = value - mass * r[i] * r[j] + (square if i == j else 0.0)
+            out[at + 6] = mass if i == j else 0.0
+            at += 1
+    x, y, z = mass * x, mass * y, mass * z
+    out[12], out[13], out[14] = 0.0, -z, y
+    out[15], out[16], out[17] = z, 0.0, -x
+    out[18], out[19], out[20] = -y, x, 0.0
 
 
 @inlined
-def _times(s, at, u0, u1, u2, u3, u4, u5):
-    """Return s[at : at + 6] . u."""
-    return s[at] * u0 + s[at + 1] * u1 + s[at + 2] * u2 + (s[at + 3] * u3 + s[at + 4] * u4 + s[at + 5] * u5)
+def _take_square(m, at, a, b, x, y):
+    """Take a x^T + b y^T, where it is symmetric, from six numbers."""
+    m[at] -= a[0] * x[0] + b[0] * y[0]
+    m[at + 1] -= a[1] * x[0] + b[1] * y[0]
+    m[at + 2] -= a[1] * x[1] + b[1] * y[1]
+    m[at + 3] -= a[2] * x[0] + b[2] * y[0]
+    m[at + 4] -= a[2] * x[1] + b[2] * y[1]
+    m[at + 5] -= a[2] * x[2] + b[2] * y[2]
 
 
 @inlined
-def _down(m, c, s0, s1, s2, s3, s4, s5):
-    """Return a column of a matrix (6, 6) times s."""
-    return m[0, c] * s0 + m[1, c] * s1 + m[2, c] * s2 + m[3, c] * s3 + m[4, c] * s4 + m[5, c] * s5
-
-
-@inlined
-def _take(row, part, u0, u1, u2, u3, u4, u5):
-    """Take u, ``part`` times, from row[:6]."""
-    row[0] -= part * u0
-    row[1] -= part * u1
-    row[2] -= part * u2
-    row[3] -= part * u3
-    row[4] -= part * u4
-    row[5] -= part * u5
+def _take_row(m, at, a, b, x, y):
+    """Take a x + b y from three numbers."""
+    m[at] -= a * x[0] + b * y[0]
+    m[at + 1] -= a * x[1] + b * y[1]
+    m[at + 2] -= a * x[2] + b * y[2]
 
 
 @internal
-def _share_columns(inertia, columns):
-    """Fill U and 1 / D of the columns of a joint."""
-    for k in range(columns.shape[0]):
+def _share_columns(m, columns):
+    """Fill U and 1 / D of the columns of a joint, and take their freedoms from an inertia m (21,)."""
+    count = columns.shape[0]
+    for k in range(count):
         s = columns[k]
-        s0, s1, s2, s3, s4, s5 = s[0], s[1], s[2], s[3], s[4], s[5]
-        u0 = _down(inertia, 0, s0, s1, s2, s3, s4, s5)
-        u1 = _down(inertia, 1, s0, s1, s2, s3, s4, s5)
-        u2 = _down(inertia, 2, s0, s1, s2, s3, s4, s5)
-        u3 = _down(inertia, 3, s0, s1, s2, s3, s4, s5)
-        u4 = _down(inertia, 4, s0, s1, s2, s3, s4, s5)
-        u5 = _down(inertia, 5, s0, s1, s2, s3, s4, s5)
-        s[SHARE], s[SHARE + 1], s[SHARE + 2], s[SHARE + 3], s[SHARE + 4], s[SHARE + 5] = u0, u1, u2, u3, u4, u5
-    for k in range(columns.shape[0] - 1, -1, -1):
+        a, b = part_of(s, AXIS_OF), part_of(s, AXIS_OF + 3)
+        set_part(
+            s, SHARE,
+            m[0] * a[0] + m[1] * a[1] + m[3] * a[2] + (m[12] * b[0] + m[13] * b[1] + m[14] * b[2]),
+            m[1] * a[0] + m[2] * a[1] + m[4] * a[2] + (m[15] * b[0] + m[16] * b[1] + m[17] * b[2]),
+            m[3] * a[0] + m[4] * a[1] + m[5] * a[2] + (m[18] * b[0] + m[19] * b[1] + m[20] * b[2]),
+        )  # fmt: skip
+        set_part(
+            s, SHARE + 3,
+            m[12] * a[0] + m[15] * a[1] + m[18] * a[2] + (m[6] * b[0] + m[7] * b[1] + m[9] * b[2]),
+            m[13] * a[0] + m[16] * a[1] + m[19] * a[2] + (m[7] * b[0] + m[8] * b[1] + m[10] * b[2]),
+            m[14] * a[0] + m[17] * a[1] + m[20] * a[2] + (m[9] * b[0] + m[10] * b[1] + m[11] * b[2]),
+        )  # fmt: skip
+    for k in range(count - 1, -1, -1):
         s = columns[k]
-        u0, u1, u2, u3, u4, u5 = s[SHARE], s[SHARE + 1], s[SHARE + 2], s[SHARE + 3], s[SHARE + 4], s[SHARE + 5]
-        inverse = 1.0 / _times(s, AXIS_OF, u0, u1, u2, u3, u4, u5)
+        u, t = part_of(s, SHARE), part_of(s, SHARE + 3)
+        inverse = 1.0 / (times(s, AXIS_OF, u) + times(s, AXIS_OF + 3, t))
         s[INVERSE] = inverse
         for j in range(k):
-            part = inverse * _times(columns[j], AXIS_OF, u0, u1, u2, u3, u4, u5)
-            _take(columns[j, SHARE : SHARE + 6], part, u0, u1, u2, u3, u4, u5)
+            part = -inverse * (times(columns[j], AXIS_OF, u) + times(columns[j], AXIS_OF + 3, t))
+            add_part(columns[j], SHARE, part, u)
+            add_part(columns[j], SHARE + 3, part, t)
 
 
 @internal
-def _pass_on(inertia, columns, parent):
-    """Add what a joint passes on of an inertia (6, 6) to that of the parent."""
-    for r in range(6):
-        m = inertia[r]
-        m0, m1, m2, m3, m4, m5 = m[0], m[1], m[2], m[3], m[4], m[5]
-        for k in range(columns.shape[0]):
-            s = columns[k]
-            part = s[SHARE + r] * s[INVERSE]
-            m0 -= part * s[SHARE]
-            m1 -= part * s[SHARE + 1]
-            m2 -= part * s[SHARE + 2]
-            m3 -= part * s[SHARE + 3]
-            m4 -= part * s[SHARE + 4]
-            m5 -= part * s[SHARE + 5]
-        _take(parent[r], -1.0, m0, m1, m2, m3, m4, m5)
+def _pass_on(m, columns, parent):
+    """Add what a joint passes on of an inertia m (21,), which is spent, to that of the parent; columns go in pairs."""
+    count = columns.shape[0]
+    none = (0.0, 0.0, 0.0)
+    for k in range(0, count, 2):
+        s = columns[k]
+        u, t = part_of(s, SHARE), part_of(s, SHARE + 3)
+        a, b = scaled(u, s[INVERSE]), scaled(t, s[INVERSE])
+        v, w, c, d = none, none, none, none
+        if k + 1 < count:
+            s = columns[k + 1]
+            v, w = part_of(s, SHARE), part_of(s, SHARE + 3)
+            c, d = scaled(v, s[INVERSE]), scaled(w, s[INVERSE])
+        _take_square(m, 0, a, c, u, v)
+        _take_square(m, 6, b, d, t, w)
+        _take_row(m, 12, a[0], c[0], t, w)
+        _take_row(m, 15, a[1], c[1], t, w)
+        _take_row(m, 18, a[2], c[2], t, w)
+    for k in range(21):
+        parent[k] += m[k]
 
 
 @internal
@@ -184,21 +183,16 @@ def gather(tree, work):
         b = tree.order[i]
         parent = tree.index[b, PARENT]
         first = tree.index[b, FIRST_Z] - 3
-        p = body[b, PUSH : PUSH + 6]
-        p0, p1, p2, p3, p4, p5 = p[0], p[1], p[2], p[3], p[4], p[5]
+        p, f = part_of(body[b], PUSH), part_of(body[b], PUSH + 3)
         for k in range(first + tree.index[b, COUNT] - 1, first - 1, -1):
             s = work.column[k]
-            u = -_times(s, AXIS_OF, p0, p1, p2, p3, p4, p5)
+            u = -(times(s, AXIS_OF, p) + times(s, AXIS_OF + 3, f))
             s[LEFT] = u
             u *= s[INVERSE]
-            p0 += u * s[SHARE]
-            p1 += u * s[SHARE + 1]
-            p2 += u * s[SHARE + 2]
-            p3 += u * s[SHARE + 3]
-            p4 += u * s[SHARE + 4]
-            p5 += u * s[SHARE + 5]
+            p, f = plus(p, u, part_of(s, SHARE)), plus(f, u, part_of(s, SHARE + 3))
         if parent > 0:
-            _take(body[parent, PUSH : PUSH + 6], -1.0, p0, p1, p2, p3, p4, p5)
+            add_part(body[parent], PUSH, 1.0, p)
+            add_part(body[parent], PUSH + 3, 1.0, f)
 
 
 @internal
@@ -209,22 +203,16 @@ def release(tree, work, side, a):
         b = tree.order[i]
         parent = tree.index[b, PARENT]
         first = tree.index[b, FIRST_Z]
-        m0 = m1 = m2 = m3 = m4 = m5 = 0.0
+        w, v = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
         if parent > 0:
-            m = body[parent, MOTION : MOTION + 6]
-            m0, m1, m2, m3, m4, m5 = m[0], m[1], m[2], m[3], m[4], m[5]
+            w, v = part_of(body[parent], MOTION), part_of(body[parent], MOTION + 3)
         for k in range(first, first + tree.index[b, COUNT]):
             s = work.column[k - 3]
-            gain = (s[LEFT + side] - _times(s, SHARE, m0, m1, m2, m3, m4, m5)) * s[INVERSE]
+            gain = (s[LEFT + side] - (times(s, SHARE, w) + times(s, SHARE + 3, v))) * s[INVERSE]
             a[k] = gain
-            m0 += gain * s[0]
-            m1 += gain * s[1]
-            m2 += gain * s[2]
-            m3 += gain * s[3]
-            m4 += gain * s[4]
-            m5 += gain * s[5]
-        m = body[b, MOTION : MOTION + 6]
-        m[0], m[1], m[2], m[3], m[4], m[5] = m0, m1, m2, m3, m4, m5
+            w, v = plus(w, gain, part_of(s, AXIS_OF)), plus(v, gain, part_of(s, AXIS_OF + 3))
+        set_part(body[b], MOTION, w[0], w[1], w[2])
+        set_part(body[b], MOTION + 3, v[0], v[1], v[2])
 
 
 @internal
@@ -255,18 +243,13 @@ def spread_row(tree, work, system, ws, row):
         b = tree.path[n]
         parent = tree.index[b, PARENT]
         first = tree.index[b, FIRST_Z] - 3
-        f = body[b, FLOW : FLOW + 6]
-        f0, f1, f2, f3, f4, f5 = f[0], f[1], f[2], f[3], f[4], f[5]
+        p, f = part_of(body[b], FLOW), part_of(body[b], FLOW + 3)
         for k in range(first + tree.index[b, COUNT] - 1, first - 1, -1):
             s = work.column[k]
-            part = y[k] + _times(s, AXIS_OF, f0, f1, f2, f3, f4, f5)
+            part = y[k] + times(s, AXIS_OF, p) + times(s, AXIS_OF + 3, f)
             y[k] = part
-            part *= s[INVERSE]
-            f0 -= part * s[SHARE]
-            f1 -= part * s[SHARE + 1]
-            f2 -= part * s[SHARE + 2]
-            f3 -= part * s[SHARE + 3]
-            f4 -= part * s[SHARE + 4]
-            f5 -= part * s[SHARE + 5]
+            part *= -s[INVERSE]
+            p, f = plus(p, part, part_of(s, SHARE)), plus(f, part, part_of(s, SHARE + 3))
         if parent > 0:
-            _take(body[parent, FLOW : FLOW + 6], -1.0, f0, f1, f2, f3, f4, f5)
+            add_part(body[parent], FLOW, 1.0, p)
+            add_part(body[parent], FLOW + 3, 1.0, f)

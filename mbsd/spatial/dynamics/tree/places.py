@@ -38,6 +38,7 @@ from mbsd.spatial.dynamics.tree.arrays import (
     UNIVERSAL,
     VELOCITY,
 )
+from mbsd.spatial.dynamics.tree.triples import add, cross, part_of, plus, scaled, set_part
 from mbsd.spatial.equations.vectors import fill_rotation
 
 
@@ -190,48 +191,18 @@ def place_tree(tree, work, q, ws):
         body[b, ORIGIN + 2] = w
 
 
-@inlined
-def _across(w, v, u, s):
-    """Return w x s + v x u, the second half of (w, v) x (u, s)."""
-    return (
-        w[1] * s[2] - w[2] * s[1] + v[1] * u[2] - v[2] * u[1],
-        w[2] * s[0] - w[0] * s[2] + v[2] * u[0] - v[0] * u[2],
-        w[0] * s[1] - w[1] * s[0] + v[0] * u[1] - v[1] * u[0],
-    )
-
-
-@inlined
-def _add(a, b):
-    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
-
-
-@inlined
-def _cross(a, b):
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
-
-
-@inlined
-def _scaled(s, at, z):
-    return s[at] * z, s[at + 1] * z, s[at + 2] * z
+@internal
+def at_centre(body, b, part, out, d):
+    """Fill out[d : d + 6] with the velocity of a centre of mass and w, of a motion in columns ``part`` on."""
+    w = part_of(body[b], part)
+    _set(out, d, add(part_of(body[b], part + 3), cross(w, part_of(body[b], REACH))), w)
 
 
 @inlined
 def _set(out, at, a, b):
     """Fill out[at : at + 6] with two vectors."""
-    out[at] = a[0]
-    out[at + 1] = a[1]
-    out[at + 2] = a[2]
-    out[at + 3] = b[0]
-    out[at + 4] = b[1]
-    out[at + 5] = b[2]
-
-
-@internal
-def at_centre(body, b, part, out, d):
-    """Fill out[d : d + 6] with the velocity of a centre of mass and w, of a motion in columns ``part`` on."""
-    w = (body[b, part], body[b, part + 1], body[b, part + 2])
-    v = (body[b, part + 3], body[b, part + 4], body[b, part + 5])
-    _set(out, d, _add(v, _cross(w, (body[b, REACH], body[b, REACH + 1], body[b, REACH + 2]))), w)
+    set_part(out, at, a[0], a[1], a[2])
+    set_part(out, at + 3, b[0], b[1], b[2])
 
 
 @internal
@@ -247,24 +218,23 @@ def move_tree(tree, work, rates):
         w, v, x, y = none, none, none, none
         if parent > 0:
             m = body[parent]
-            w, v = (m[0], m[1], m[2]), (m[3], m[4], m[5])
-            x, y = (m[6], m[7], m[8]), (m[9], m[10], m[11])
+            w, v, x, y = part_of(m, 0), part_of(m, 3), part_of(m, 6), part_of(m, 9)
         single = count - 3 if tree.index[b, KIND] <= SPHERICAL else count
         for k in range(first, first + single):
             s = work.column[k]
-            u, t = _scaled(s, 0, rates[3 + k]), _scaled(s, 3, rates[3 + k])
-            x, y = _add(x, _cross(w, u)), _add(y, _across(w, v, u, t))
-            w, v = _add(w, u), _add(v, t)
+            u, t = scaled(part_of(s, 0), rates[3 + k]), scaled(part_of(s, 3), rates[3 + k])
+            x, y = add(x, cross(w, u)), add(y, add(cross(w, t), cross(v, u)))
+            w, v = add(w, u), add(v, t)
         if single < count:
             u, t = none, none
             for k in range(first + single, first + count):
                 s = work.column[k]
-                u, t = _add(u, _scaled(s, 0, rates[3 + k])), _add(t, _scaled(s, 3, rates[3 + k]))
-            x, y = _add(x, _cross(w, u)), _add(y, _across(w, v, u, t))
-            w, v = _add(w, u), _add(v, t)
+                u, t = plus(u, rates[3 + k], part_of(s, 0)), plus(t, rates[3 + k], part_of(s, 3))
+            x, y = add(x, cross(w, u)), add(y, add(cross(w, t), cross(v, u)))
+            w, v = add(w, u), add(v, t)
         _set(body[b], VELOCITY, w, v)
         _set(body[b], MOTION, x, y)
-        reach = (body[b, REACH], body[b, REACH + 1], body[b, REACH + 2])
-        centre = _add(v, _cross(w, reach))
+        reach = part_of(body[b], REACH)
+        centre = add(v, cross(w, reach))
         _set(work.rate, 6 * b - 3, centre, w)
-        _set(work.bend, 6 * b - 3, _add(_add(y, _cross(x, reach)), _cross(w, centre)), x)
+        _set(work.bend, 6 * b - 3, add(add(y, cross(x, reach)), cross(w, centre)), x)

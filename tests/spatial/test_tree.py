@@ -245,6 +245,27 @@ def test_turns_far_from_zero_and_places_far_from_the_origin_cost_few_digits() ->
     assert np.allclose(*tips, rtol=0, atol=1e-10)
 
 
+def test_the_quicker_formulation_is_chosen() -> None:
+    """Trees and loops go by the tree, what flies free and long chains that are tied at every joint do not."""
+    m = two_bodies()
+    assert m.simulate(duration=0.01, steps=1).formulation == "reference"
+    m.revolute("hinge", m.ground, m.bodies["first"], at=(0, 0, 0), axis=(0, 0, 1))
+    m.spherical("ball", m.bodies["first"], m.bodies["second"], at=(0, 0, 1))
+    assert m.simulate(duration=0.01, steps=1).formulation == "tree"
+    assert machines.bricard().simulate(duration=0.01, steps=1).formulation == "tree"
+    net = Mechanism("net")
+    before = [net.ground, net.ground]
+    for k in range(40):
+        ends = [[(0.1 * side, 0, -0.1 * (k + low)) for low in (0, 1)] for side in (0, 1)]
+        bars = [net.rod(f"bar {k} {side}", *ends[side], mass=0.1, radius=0.01) for side in (0, 1)]
+        for side in (0, 1):
+            at = ends[side][0]
+            net.universal(f"joint {k} {side}", before[side], bars[side], at=at, first=(1, 0, 0), second=(0, 1, 0))
+        net.distance(f"tie {k}", *bars, start=ends[0][1], end=ends[1][1])
+        before = bars
+    assert net.simulate(duration=0.001, steps=1, tolerance=1e-4).formulation == "reference"
+
+
 def test_an_unknown_formulation_is_refused() -> None:
     with pytest.raises(ModelError, match="no formulation 'tre', did you mean 'tree'"):
         machines.bricard().simulate(duration=1.0, formulation="tre")

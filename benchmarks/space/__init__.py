@@ -17,7 +17,7 @@ PROBLEMS = (TOP, BRICARD, *CHAINS, SWEEP)
 CODES = ("mbsd", "exudyn", "mujoco")
 STEPS = 1000
 DURATION = dict.fromkeys(PROBLEMS, 1.0) | {TOP: 0.2}
-LIMITS = dict(zip(PROBLEMS, (1.5e-7, 5e-7, 3e-7, 1e-7, 2e-7, 1e-8), strict=True))
+LIMITS = dict(zip(PROBLEMS, (1.5e-7, 1e-7, 1e-8, 1e-8, 1e-8, 2e-8), strict=True))
 BARS = {
     name: {"exudyn": exudyn, "mujoco": mujoco}
     for name, exudyn, mujoco in zip(PROBLEMS, (200, 300, 2, 9, 30, 50), (15, 20, 10, 6, 6, 8), strict=True)

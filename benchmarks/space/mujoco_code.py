@@ -16,7 +16,7 @@ import numpy as np
 from benchmarks import space
 
 VERSION = mujoco.__version__
-COUNTS = dict(zip(space.PROBLEMS, (3000, 900, 900, 1400, 2000, space.STEPS), strict=True))
+COUNTS = dict(zip(space.PROBLEMS, (800, 310, 750, 980, 700, space.STEPS), strict=True))
 """Steps of each problem, the fewest that keep its limit."""
 HEAVY = 1e8
 SOFT = 'solimp="0.9999 0.9999 0.001 0.5 2"'

@@ -157,8 +157,23 @@ def _pass_on(m, columns, parent):
 
 
 @internal
+def _gather(body, columns, b, parent):
+    """Fill u of the columns of a joint from the force that its body needs, which is added to the parent's."""
+    p, f = part_of(body[b], PUSH), part_of(body[b], PUSH + 3)
+    for k in range(columns.shape[0] - 1, -1, -1):
+        s = columns[k]
+        u = -(times(s, AXIS_OF, p) + times(s, AXIS_OF + 3, f))
+        s[LEFT] = u
+        u *= s[INVERSE]
+        p, f = plus(p, u, part_of(s, SHARE)), plus(f, u, part_of(s, SHARE + 3))
+    if parent > 0:
+        add_part(body[parent], PUSH, 1.0, p)
+        add_part(body[parent], PUSH + 3, 1.0, f)
+
+
+@internal
 def factor_tree(tree, work, system, ws):
-    """Fill U and D of all columns."""
+    """Fill U and D of all columns, and u from the forces that bodies need, which are spent."""
     inertia = work.inertia
     last = tree.order.shape[0] - 1
     for i in range(last + 1):
@@ -171,28 +186,9 @@ def factor_tree(tree, work, system, ws):
         first = tree.index[b, FIRST_Z] - 3
         columns = work.column[first : first + tree.index[b, COUNT]]
         _share_columns(inertia[b], columns)
+        _gather(work.body, columns, b, parent)
         if parent > 0:
             _pass_on(inertia[b], columns, inertia[parent])
-
-
-@internal
-def gather(tree, work):
-    """Fill u of all columns from the forces that bodies need, which are spent."""
-    body = work.body
-    for i in range(tree.order.shape[0] - 1, -1, -1):
-        b = tree.order[i]
-        parent = tree.index[b, PARENT]
-        first = tree.index[b, FIRST_Z] - 3
-        p, f = part_of(body[b], PUSH), part_of(body[b], PUSH + 3)
-        for k in range(first + tree.index[b, COUNT] - 1, first - 1, -1):
-            s = work.column[k]
-            u = -(times(s, AXIS_OF, p) + times(s, AXIS_OF + 3, f))
-            s[LEFT] = u
-            u *= s[INVERSE]
-            p, f = plus(p, u, part_of(s, SHARE)), plus(f, u, part_of(s, SHARE + 3))
-        if parent > 0:
-            add_part(body[parent], PUSH, 1.0, p)
-            add_part(body[parent], PUSH + 3, 1.0, f)
 
 
 @internal

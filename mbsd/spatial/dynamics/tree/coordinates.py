@@ -77,7 +77,7 @@ class TreeCoordinates:
             limit=np.array([LIMIT if used < held else 0.0]),
             turns=turns,
         )
-        begin(dyn, self.ws, self.y[0], drive)
+        begin(dyn, self.ws, self.y[0], self.y[1], drive)
         self._set_rates()
         return dyn
 

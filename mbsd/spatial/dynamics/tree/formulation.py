@@ -21,8 +21,8 @@ from mbsd.dynamics.state import NEXT, TIME, WORK
 from mbsd.equations.laws import evaluate_laws
 from mbsd.spatial.dynamics.envelope import solve
 from mbsd.spatial.dynamics.tree.arrays import COUNT, FIRST_Q, FIRST_Z, FREE, KIND, LEFT, MOTION, SPHERICAL
-from mbsd.spatial.dynamics.tree.bodies import factor_tree, gather, release, weigh
-from mbsd.spatial.dynamics.tree.places import at_centre, move_tree, place_tree
+from mbsd.spatial.dynamics.tree.bodies import factor_tree, release, weigh
+from mbsd.spatial.dynamics.tree.places import at_centre, place_tree
 from mbsd.spatial.dynamics.tree.rows import answer_rows, factor_rows, hold_rows, measure_rates, renew_rows
 from mbsd.spatial.equations.evaluation import evaluate_gamma, evaluate_nu, evaluate_rows
 from mbsd.spatial.equations.forces import apply_forces
@@ -66,10 +66,10 @@ class TreeDynamics(NamedTuple):
 
 
 @internal
-def _measure(dyn, ws, q, drive):
-    """Fill pose, columns, phi and J at coordinates q (3 + nq,)."""
+def _measure(dyn, ws, q, v, drive):
+    """Fill poses, columns, phi and J at coordinates q (3 + nq,), and motions at rates v (3 + nz,)."""
     tree = dyn.tree
-    place_tree(tree, dyn.work, q, ws)
+    place_tree(tree, dyn.work, q, v, ws)
     if ws.phi.shape[0] > 0:
         evaluate_rows(dyn.system, dyn.work.pose, drive, ws)
         for n in range(tree.linear.shape[0]):
@@ -84,16 +84,14 @@ def accelerate(dyn, scratch, t, state, a, lam):
     work = dyn.work
     if scratch.drive.shape[0] > 1:
         evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
-    _measure(dyn, ws, state[0], scratch.drive)
-    move_tree(dyn.tree, work, state[1])
+    _measure(dyn, ws, state[0], state[1], scratch.drive)
     power = 0.0
     for c in range(ws.load.shape[0]):
         ws.load[c] = 0.0
     if dyn.system.force.shape[0] > 0:
         power = apply_forces(dyn.system, dyn.laws, t, work.rate, ws, ws.load, dyn.pushed)
-    factor_tree(dyn.tree, work, dyn.system, ws)
     weigh(dyn.tree, work, dyn.system, ws, ws.load)
-    gather(dyn.tree, work)
+    factor_tree(dyn.tree, work, dyn.system, ws)
     if dyn.system.held > 0:
         gamma = ws.right[0]
         evaluate_gamma(dyn.system, work.rate, scratch.drive, ws, gamma)
@@ -175,8 +173,7 @@ def project(dyn, scratch, t, state, passes):
         evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
     evaluate_nu(dyn.system, scratch.drive, nu)
     for step in range(passes):
-        _measure(dyn, ws, state[0], scratch.drive)
-        move_tree(dyn.tree, work, state[1])
+        _measure(dyn, ws, state[0], state[1], scratch.drive)
         measure_rates(dyn, ws, state[1], nu, work.own[0])
         if step == 0:
             factor_tree(dyn.tree, work, dyn.system, ws)
@@ -209,7 +206,7 @@ def settle(dyn, scratch, t, state, fresh):
     ws = scratch.ws
     narrow = scratch.report[0] < dyn.limit[0]
     if narrow or ws.turn.shape[0] > 0:
-        _measure(dyn, ws, state[0], scratch.drive)
+        _measure(dyn, ws, state[0], state[1], scratch.drive)
     for n in range(ws.guess.shape[0]):
         ws.guess[n] = ws.turn[n]
     if narrow:
@@ -260,9 +257,9 @@ def record_here(dyn, scratch, state, out):
 
 
 @kernel
-def begin(dyn, ws, q, drive):
-    """Fill pose and columns at coordinates q (3 + nq,), and choose the rows in use; for callers in Python."""
-    _measure(dyn, ws, q, drive)
+def begin(dyn, ws, q, v, drive):
+    """Fill poses and columns at coordinates q (3 + nq,), and choose the rows in use; for callers in Python."""
+    _measure(dyn, ws, q, v, drive)
     factor_tree(dyn.tree, dyn.work, dyn.system, ws)
     renew_rows(dyn, ws)
 

@@ -129,66 +129,64 @@ def _place_free(tree, q, b, pose, m, body, column):
 
 
 @internal
-def place_tree(tree, work, q, ws):
-    """Fill poses, rotations and columns S at coordinates q (3 + nq,)."""
+def _place(tree, work, b, q, ws):
+    """Fill pose, rotation and columns S of a body at coordinates q (3 + nq,); those of its parent are known."""
     pose = work.pose
     body = work.body
-    for i in range(tree.order.shape[0]):
-        b = tree.order[i]
-        kind = tree.index[b, KIND]
-        first = tree.index[b, FIRST_Z] - 3
-        column = work.column[first : first + tree.index[b, COUNT]]
-        m = ws.rotation[b]
-        if kind == FREE:
-            _place_free(tree, q, b, pose, m, body, column)
-            continue
-        _orient(tree, q, b, pose, m)
-        parent = tree.index[b, PARENT]
-        root = tree.index[b, ROOT]
-        n = tree.number[b]
-        base = ws.rotation[parent]
-        x, y, z = _carry(base, n, ARM)
-        if parent > 0:
-            x += pose[7 * parent - 4]
-            y += pose[7 * parent - 3]
-            z += pose[7 * parent - 2]
-        if b == root:
-            body[b, ORIGIN] = x
-            body[b, ORIGIN + 1] = y
-            body[b, ORIGIN + 2] = z
-        u = body[root, ORIGIN]
-        v = body[root, ORIGIN + 1]
-        w = body[root, ORIGIN + 2]
-        arm = _carry(m, n, OWN_ARM)
-        slide = 0.0
-        a = _carry(base, n, AXIS)
-        if kind == SPHERICAL:
-            for k in range(3):
-                _set_turn(column[k], (m[0, k], m[1, k], m[2, k]), x - u, y - v, z - w)
-        elif kind >= REVOLUTE:
-            _set_turn(column[0], a, x - u, y - v, z - w)
-            if kind == UNIVERSAL:
-                _set_turn(column[1], _carry(m, n, OWN_AXIS), x - u, y - v, z - w)
-        if kind == PRISMATIC or kind == CYLINDRICAL:  # noqa: SIM109 (a tuple costs a comparison of tuples)
-            last = tree.index[b, COUNT] - 1
-            slide = q[tree.index[b, FIRST_Q] + last]
-            for k in range(3):
-                column[last, AXIS_OF + k] = 0.0
-            column[last, AXIS_OF + 3] = a[0]
-            column[last, AXIS_OF + 4] = a[1]
-            column[last, AXIS_OF + 5] = a[2]
-        x += slide * a[0] - arm[0]
-        y += slide * a[1] - arm[1]
-        z += slide * a[2] - arm[2]
-        pose[7 * b - 4] = x
-        pose[7 * b - 3] = y
-        pose[7 * b - 2] = z
-        body[b, REACH] = x - u
-        body[b, REACH + 1] = y - v
-        body[b, REACH + 2] = z - w
-        body[b, ORIGIN] = u
-        body[b, ORIGIN + 1] = v
-        body[b, ORIGIN + 2] = w
+    kind = tree.index[b, KIND]
+    first = tree.index[b, FIRST_Z] - 3
+    column = work.column[first : first + tree.index[b, COUNT]]
+    m = ws.rotation[b]
+    if kind == FREE:
+        _place_free(tree, q, b, pose, m, body, column)
+        return
+    _orient(tree, q, b, pose, m)
+    parent = tree.index[b, PARENT]
+    root = tree.index[b, ROOT]
+    n = tree.number[b]
+    base = ws.rotation[parent]
+    x, y, z = _carry(base, n, ARM)
+    if parent > 0:
+        x += pose[7 * parent - 4]
+        y += pose[7 * parent - 3]
+        z += pose[7 * parent - 2]
+    if b == root:
+        body[b, ORIGIN] = x
+        body[b, ORIGIN + 1] = y
+        body[b, ORIGIN + 2] = z
+    u = body[root, ORIGIN]
+    v = body[root, ORIGIN + 1]
+    w = body[root, ORIGIN + 2]
+    arm = _carry(m, n, OWN_ARM)
+    slide = 0.0
+    a = _carry(base, n, AXIS)
+    if kind == SPHERICAL:
+        for k in range(3):
+            _set_turn(column[k], (m[0, k], m[1, k], m[2, k]), x - u, y - v, z - w)
+    elif kind >= REVOLUTE:
+        _set_turn(column[0], a, x - u, y - v, z - w)
+        if kind == UNIVERSAL:
+            _set_turn(column[1], _carry(m, n, OWN_AXIS), x - u, y - v, z - w)
+    if kind == PRISMATIC or kind == CYLINDRICAL:  # noqa: SIM109 (a tuple costs a comparison of tuples)
+        last = tree.index[b, COUNT] - 1
+        slide = q[tree.index[b, FIRST_Q] + last]
+        for k in range(3):
+            column[last, AXIS_OF + k] = 0.0
+        column[last, AXIS_OF + 3] = a[0]
+        column[last, AXIS_OF + 4] = a[1]
+        column[last, AXIS_OF + 5] = a[2]
+    x += slide * a[0] - arm[0]
+    y += slide * a[1] - arm[1]
+    z += slide * a[2] - arm[2]
+    pose[7 * b - 4] = x
+    pose[7 * b - 3] = y
+    pose[7 * b - 2] = z
+    body[b, REACH] = x - u
+    body[b, REACH + 1] = y - v
+    body[b, REACH + 2] = z - w
+    body[b, ORIGIN] = u
+    body[b, ORIGIN + 1] = v
+    body[b, ORIGIN + 2] = w
 
 
 @internal
@@ -206,35 +204,42 @@ def _set(out, at, a, b):
 
 
 @internal
-def move_tree(tree, work, rates):
-    """Fill motions of bodies at rates (3 + nz,) in the world, and their accelerations while these stay."""
+def _move(tree, work, b, rates):
+    """Fill motion of a body at rates (3 + nz,), in the world, too, and its acceleration while these stay."""
     body = work.body
     none = (0.0, 0.0, 0.0)
+    parent = tree.index[b, PARENT]
+    first = tree.index[b, FIRST_Z] - 3
+    count = tree.index[b, COUNT]
+    w, v, x, y = none, none, none, none
+    if parent > 0:
+        m = body[parent]
+        w, v, x, y = part_of(m, VELOCITY), part_of(m, VELOCITY + 3), part_of(m, MOTION), part_of(m, MOTION + 3)
+    single = count - 3 if tree.index[b, KIND] <= SPHERICAL else count
+    for k in range(first, first + single):
+        s = work.column[k]
+        u, t = scaled(part_of(s, 0), rates[3 + k]), scaled(part_of(s, 3), rates[3 + k])
+        x, y = add(x, cross(w, u)), add(y, add(cross(w, t), cross(v, u)))
+        w, v = add(w, u), add(v, t)
+    if single < count:
+        u, t = none, none
+        for k in range(first + single, first + count):
+            s = work.column[k]
+            u, t = plus(u, rates[3 + k], part_of(s, 0)), plus(t, rates[3 + k], part_of(s, 3))
+        x, y = add(x, cross(w, u)), add(y, add(cross(w, t), cross(v, u)))
+        w, v = add(w, u), add(v, t)
+    _set(body[b], VELOCITY, w, v)
+    _set(body[b], MOTION, x, y)
+    reach = part_of(body[b], REACH)
+    centre = add(v, cross(w, reach))
+    _set(work.rate, 6 * b - 3, centre, w)
+    _set(work.bend, 6 * b - 3, add(add(y, cross(x, reach)), cross(w, centre)), x)
+
+
+@internal
+def place_tree(tree, work, q, rates, ws):
+    """Fill poses and columns S at coordinates q (3 + nq,), and motions at rates (3 + nz,)."""
     for i in range(tree.order.shape[0]):
         b = tree.order[i]
-        parent = tree.index[b, PARENT]
-        first = tree.index[b, FIRST_Z] - 3
-        count = tree.index[b, COUNT]
-        w, v, x, y = none, none, none, none
-        if parent > 0:
-            m = body[parent]
-            w, v, x, y = part_of(m, 0), part_of(m, 3), part_of(m, 6), part_of(m, 9)
-        single = count - 3 if tree.index[b, KIND] <= SPHERICAL else count
-        for k in range(first, first + single):
-            s = work.column[k]
-            u, t = scaled(part_of(s, 0), rates[3 + k]), scaled(part_of(s, 3), rates[3 + k])
-            x, y = add(x, cross(w, u)), add(y, add(cross(w, t), cross(v, u)))
-            w, v = add(w, u), add(v, t)
-        if single < count:
-            u, t = none, none
-            for k in range(first + single, first + count):
-                s = work.column[k]
-                u, t = plus(u, rates[3 + k], part_of(s, 0)), plus(t, rates[3 + k], part_of(s, 3))
-            x, y = add(x, cross(w, u)), add(y, add(cross(w, t), cross(v, u)))
-            w, v = add(w, u), add(v, t)
-        _set(body[b], VELOCITY, w, v)
-        _set(body[b], MOTION, x, y)
-        reach = part_of(body[b], REACH)
-        centre = add(v, cross(w, reach))
-        _set(work.rate, 6 * b - 3, centre, w)
-        _set(work.bend, 6 * b - 3, add(add(y, cross(x, reach)), cross(w, centre)), x)
+        _place(tree, work, b, q, ws)
+        _move(tree, work, b, rates)

@@ -17,7 +17,7 @@ from mbsd.spatial.kinematics.prepared import prepare as swept
 from mbsd.spatial.kinematics.sweep import march
 
 VERSION = mbsd.__version__
-TOLERANCES = dict(zip(space.PROBLEMS[:-1], (3.5e-6, 5e-5, 1.5e-6, 2e-5, 5e-4), strict=True))
+TOLERANCES = dict(zip(space.PROBLEMS[:-1], (3.5e-6, 5e-5, 3e-7, 2e-5, 5e-4), strict=True))
 
 
 def settings(problem: str) -> str:

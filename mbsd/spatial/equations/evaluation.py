@@ -17,7 +17,7 @@ from mbsd.spatial.equations.turn import bend_turns, measure_turns
 from mbsd.spatial.equations.vectors import carry_vectors, rotate_bodies, turn_vectors
 
 
-@apart
+@internal
 def evaluate_position(system, q, drive, ws):
     """Fill ws.phi (m,) and ws.jac (m, 6 k) at coordinates q (3 + 7 n,) and laws drive (drivers + 1, 3)."""
     rotate_bodies(system, q, ws)
@@ -52,7 +52,7 @@ def evaluate_nu(system, drive, out):
         out[system.driven[n, 0]] = drive[system.driven[n, 1], 1]
 
 
-@apart
+@internal
 def evaluate_gamma(system, v, drive, ws, out):
     """Fill out (m,) with gamma at velocities v (3 + 6 n,) and the place last evaluated, and ws.turn_rate."""
     turn_vectors(system, v, ws)

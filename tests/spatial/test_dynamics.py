@@ -92,11 +92,8 @@ def test_a_tennis_racket_turns_over_and_comes_back(formulation: str) -> None:
     m = Mechanism("racket", gravity=None)
     m.body("racket", 1.0, inertia=(1.0, 2.0, 3.0))
     m.start_moving({"racket": (0.01, 1.0, 0.01)})
-    w = (
-        m.simulate(times=[0.0, 39.10573419729348 / 2, 39.10573419729348], tolerance=1e-12, formulation=formulation)
-        .body("racket")
-        .w_body
-    )
+    times = [0.0, 39.10573419729348 / 2, 39.10573419729348]
+    w = m.simulate(times=times, tolerance=1e-12, formulation=formulation).body("racket").w_body
     assert np.allclose(w[2], w[0], rtol=0, atol=1e-8)
     assert w[1, 1] == pytest.approx(-1.0, abs=1e-4)
 
@@ -148,10 +145,8 @@ def test_a_chain_of_universal_joints(count: int, tip: tuple[float, float, float]
 
 def test_a_driven_simulation_is_the_sweep(formulation: str) -> None:
     m = machines.slider_crank()
-    swept, simulated = (
-        m.sweep(duration=1.0, steps=20),
-        m.simulate(duration=1.0, steps=20, tolerance=1e-11, formulation=formulation),
-    )
+    swept = m.sweep(duration=1.0, steps=20)
+    simulated = m.simulate(duration=1.0, steps=20, tolerance=1e-11, formulation=formulation)
     for name in ("crank", "rod", "slider"):
         assert np.allclose(swept.body(name).place, simulated.body(name).place, rtol=0, atol=1e-9)
     torque = swept.driver("motor").torque

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections import Counter
 from typing import Any
 
 import numpy as np
@@ -43,7 +44,9 @@ class TreeCoordinates:
             self._first[link.body] = entries, rates
             entries, rates = entries + arrays.COORDINATES[link.kind], rates + arrays.RATES[link.kind]
         self.entries, self.rates = entries, rates - 3
-        self._linear = {id(link.joint): link for link in self.links if link.joint is not None}
+        jointed = [(link.joint, link) for link in self.links if link.joint is not None]
+        self._held = {id(joint) for joint, _ in jointed}
+        self._between_markers = {(id(joint.i), id(joint.j)): link for joint, link in jointed}
         self.cut = pack(m, rows_of=self._rows_of)
         self.ws = self.cut.ws
         self.used = rank - (packed.freedoms - self.rates)
@@ -84,13 +87,16 @@ class TreeCoordinates:
     def nanoseconds(self) -> float:
         """Return about what an evaluation takes on one processor (ns); see docs/decisions/space/formulation.md."""
         tree, rates = self.tree, self.tree.index[:, arrays.COUNT]
-        paths = [tree.path[a:b] for a, b in itertools.pairwise(tree.begin[: self.cut.system.held + 1])]
-        columns = [int(rates[path].sum()) for path in paths]
-        meeting = [
-            sum(not set(path).isdisjoint(other) for other in paths[: n + 1]) for n, path in enumerate(map(set, paths))
-        ]
-        rows = sum(130.0 + 15.0 * own + 2.5 * own * pairs for own, pairs in zip(columns, meeting, strict=True))
-        return 160.0 * len(self.links) + 40.0 * self.rates + rows
+        ends = itertools.pairwise(tree.begin[: self.cut.system.held + 1].tolist())
+        paths = Counter(tuple(tree.path[first:last].tolist()) for first, last in ends)
+        total = 160.0 * len(self.links) + 40.0 * self.rates
+        before: list[tuple[set[int], int]] = []
+        for path, count in paths.items():
+            columns, on = int(rates[list(path)].sum()), set(path)
+            meeting = 0.5 * (count + 1) + sum(rows for other, rows in before if not on.isdisjoint(other))
+            total += count * (130.0 + columns * (15.0 + 2.5 * meeting))
+            before.append((on, count))
+        return total
 
     def allowed(self, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
         """Return absolute and growing tolerances (2, 3 + nq) of the state."""
@@ -121,21 +127,20 @@ class TreeCoordinates:
 
     def _coordinate(self, term: Term) -> tuple[int, int] | None:
         """Return coordinate and rate that a term is, if it is one."""
-        for link in self._linear.values():
-            joint = link.joint
-            if joint is None or term.i is not joint.i or term.j is not joint.j:
-                continue
-            at, rate = self._first[link.body]
-            if term.kind == "turn" and link.kind in (arrays.REVOLUTE, arrays.CYLINDRICAL):
-                return at, rate
-            if term.kind == "along" and term.first == "z" and link.kind in (arrays.PRISMATIC, arrays.CYLINDRICAL):
-                last = arrays.RATES[link.kind] - 1
-                return at + last, rate + last
+        link = self._between_markers.get((id(term.i), id(term.j)))
+        if link is None:
+            return None
+        at, rate = self._first[link.body]
+        if term.kind == "turn" and link.kind in (arrays.REVOLUTE, arrays.CYLINDRICAL):
+            return at, rate
+        if term.kind == "along" and term.first == "z" and link.kind in (arrays.PRISMATIC, arrays.CYLINDRICAL):
+            last = arrays.RATES[link.kind] - 1
+            return at + last, rate + last
         return None
 
     def _whole_rows(self, joint: Joint) -> list[Row]:
         """Return the rows of a joint that the tree does not hold."""
-        if id(joint) not in self._linear:
+        if id(joint) not in self._held:
             return joint.rows
         return joint.rows[-1:] if joint.kind.name == "screw" else []
 
@@ -171,8 +176,9 @@ class TreeCoordinates:
             if link.joint is not None:
                 self._fill(number[link.body], link, q)
         order = [link.body for link in self.links]
+        place = {body: n for n, body in enumerate(order)}
         linear, factor, bodies = self._linear_terms()
-        paths = [self._path(ends, parent, order) for ends in bodies]
+        paths = [_path(ends, parent, place) for ends in bodies]
         return Tree(
             order=np.array(order, np.int64),
             index=index,
@@ -186,7 +192,9 @@ class TreeCoordinates:
 
     def _linear_terms(self) -> tuple[list[tuple[int, int, int]], list[float], list[set[int]]]:
         """Return linear terms with their factors, and the bodies of the tree on which each row acts."""
-        body_of = {rate: body for body, (_, rate) in self._first.items()}
+        body_of = {
+            self._first[link.body][1] + k: link.body for link in self.links for k in range(arrays.RATES[link.kind])
+        }
         linear, factor = [], []
         bodies = [{int(b) for b in sides if b > 0} for sides in self.cut.system.row_body]
         row = 0
@@ -197,18 +205,9 @@ class TreeCoordinates:
                     if known is not None:
                         linear.append((row, known[1], known[0]))
                         factor.append(term.weight)
-                        bodies[row].add(body_of[max(rate for rate in body_of if rate <= known[1])])
+                        bodies[row].add(body_of[known[1]])
                 row += whole.count
         return linear, factor, bodies
-
-    def _path(self, ends: set[int], parent: dict[int, int], order: list[int]) -> list[int]:
-        """Return these bodies and those between them and ground, children first."""
-        on: set[int] = set()
-        for body in ends:
-            while body:
-                on.add(body)
-                body = parent[body]
-        return sorted(on, key=order.index, reverse=True)
 
     def _own(self, marker: Marker) -> tuple[np.ndarray, np.ndarray]:
         """Return place and axes of a marker in the principal axes of its body."""
@@ -310,6 +309,17 @@ class TreeCoordinates:
             if count:
                 change = motion[link.body] - motion[link.parent]
                 self.y[1, rate : rate + count] = np.linalg.lstsq(columns, change, rcond=None)[0]
+
+
+def _path(ends: set[int], parent: dict[int, int], place: dict[int, int]) -> list[int]:
+    """Return these bodies and those between them and ground, children first; ``place`` is where each stands."""
+    on: set[int] = set()
+    for end in ends:
+        body = end
+        while body and body not in on:
+            on.add(body)
+            body = parent[body]
+    return sorted(on, key=place.__getitem__, reverse=True)
 
 
 def _nearest_axes(between: np.ndarray, kind: int) -> np.ndarray:

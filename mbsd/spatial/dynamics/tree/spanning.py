@@ -6,6 +6,7 @@ algorithm from ground on. A body that no such joint leads to is free.
 
 from __future__ import annotations
 
+import heapq
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -38,23 +39,29 @@ class Link(NamedTuple):
 def spanning_tree(bodies: Sequence[Body], joints: Sequence[Joint]) -> list[Link]:
     """Return the links of a tree over all bodies but ground, which is the first; parents come first."""
     number = {body.name: b for b, body in enumerate(bodies)}
-    edges = [(KINDS[j.kind.name], [number[name] for name in j.bodies], j) for j in joints if j.kind.name in KINDS]
-    depth = {0: 0}
+    ways: dict[int, list[tuple[int, int]]] = {b: [] for b in range(len(bodies))}
+    for n, joint in enumerate(joints):
+        if joint.kind.name in KINDS:
+            first, second = (number[name] for name in joint.bodies)
+            ways[first].append((n, second))
+            ways[second].append((n, first))
     links: list[Link] = []
-    while len(depth) < len(bodies):
-        ways = [
-            (arrays.RATES[kind], depth[ends[side]], n, side)
-            for n, (kind, ends, _) in enumerate(edges)
-            for side in (0, 1)
-            if ends[side] in depth and ends[1 - side] not in depth
-        ]
-        if ways:
-            _, level, n, side = min(ways)
-            kind, ends, joint = edges[n]
-            links.append(Link(ends[1 - side], ends[side], kind, joint))
-            depth[ends[1 - side]] = level + 1
-        else:
-            free = min(b for b in range(len(bodies)) if b not in depth)
+    known: set[int] = set()
+    found: list[tuple[int, int, int, int, int]] = []
+
+    def reach(body: int, depth: int) -> None:
+        known.add(body)
+        for n, other in ways[body]:
+            heapq.heappush(found, (arrays.RATES[KINDS[joints[n].kind.name]], depth, n, other, body))
+
+    reach(0, 0)
+    for free in range(len(bodies)):
+        if free not in known:
             links.append(Link(free, 0, arrays.FREE, None))
-            depth[free] = 1
+            reach(free, 1)
+        while found:
+            _, depth, n, body, parent = heapq.heappop(found)
+            if body not in known:
+                links.append(Link(body, parent, KINDS[joints[n].kind.name], joints[n]))
+                reach(body, depth + 1)
     return links

@@ -1,4 +1,4 @@
-"""Problems in space beside peers: a top, Bricard's loop, chains of universal joints, a sweep of a slider-crank.
+"""Problems in space beside peers: a top, a loop, chains of universal joints, a sweep.
 
 Errors are the largest coordinate of a watched place away from the exact one (m) at the end, of the sweep at all poses.
 Exact places are those of tests/spatial; of the longest chain of both formulations at tolerance 1e-12, and of the sweep

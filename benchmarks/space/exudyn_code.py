@@ -1,4 +1,4 @@
-"""Exudyn: rigid bodies with Euler parameters by implicit methods; chains as kinematic trees by explicit ones.
+"""Exudyn: rigid bodies by implicit methods; chains as kinematic trees by explicit ones.
 
 The closing hinge of Bricard's loop leaves out the row that repeats others. A sweep is its static solver along the turn
 of the crank, positions alone.

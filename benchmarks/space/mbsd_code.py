@@ -1,4 +1,4 @@
-"""mbsd: DOP853 in coordinates that the program chooses; the sweep with all velocities and accelerations."""
+"""mbsd: DOP853 in coordinates that the program chooses; the sweep with accelerations."""
 
 from __future__ import annotations
 

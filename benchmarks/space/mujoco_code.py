@@ -101,7 +101,7 @@ def _model(problem: str, steps: int) -> Any:
 
 
 def prepare(problem: str, count: int = 0) -> tuple[Callable[[], Callable[[], Any]], Callable[[Any], float]]:
-    """``fresh`` gives a run, whose making is not timed; ``error`` looks at where it ended, or makes one of its own."""
+    """``fresh`` gives a run, whose making is not timed; ``error`` looks at where it ended."""
     steps = count or COUNTS[problem]
     model = _model(problem, steps)
     data = mujoco.MjData(model)

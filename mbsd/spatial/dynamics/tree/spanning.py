@@ -47,20 +47,20 @@ def spanning_tree(bodies: Sequence[Body], joints: Sequence[Joint]) -> list[Link]
             ways[second].append((n, first))
     links: list[Link] = []
     known: set[int] = set()
-    found: list[tuple[int, int, int, int, int]] = []
+    edges: list[tuple[int, int, int, int, int]] = []
 
     def reach(body: int, depth: int) -> None:
         known.add(body)
         for n, other in ways[body]:
-            heapq.heappush(found, (arrays.RATES[KINDS[joints[n].kind.name]], depth, n, other, body))
+            heapq.heappush(edges, (arrays.RATES[KINDS[joints[n].kind.name]], depth, n, other, body))
 
     reach(0, 0)
     for free in range(len(bodies)):
         if free not in known:
             links.append(Link(free, 0, arrays.FREE, None))
             reach(free, 1)
-        while found:
-            _, depth, n, body, parent = heapq.heappop(found)
+        while edges:
+            _, depth, n, body, parent = heapq.heappop(edges)
             if body not in known:
                 links.append(Link(body, parent, KINDS[joints[n].kind.name], joints[n]))
                 reach(body, depth + 1)

@@ -14,6 +14,7 @@ python -m benchmarks cluster          what a cluster costs, a task and a worker,
 python -m benchmarks scaling          a long row of four-bars, cost of a body, only shown
 python -m benchmarks simulations       many simulations and single ones with events beside peers, only shown
 python -m benchmarks synthesis        lengths for a path alone, only shown
+python -m benchmarks space            a top, loops and chains in space beside peers, only shown
 python -m benchmarks start            the table of start-up (make bench-start)
 python -m benchmarks table            the tables again from the last run
 python -m benchmarks tolerances        four-bars whose lengths stray beside numpy and a loop with scipy, only shown
@@ -33,6 +34,7 @@ from benchmarks.film import timing
 from benchmarks.machines import measure as machines
 from benchmarks.rows import Bar, Row
 from benchmarks.simulations import measure as simulations
+from benchmarks.space import measure as space
 from shared.stage.console import run_cli, say
 from shared.stage.errors import UserError
 
@@ -47,6 +49,7 @@ PARTS = {
     "engines": engines.measured,
     "clearance": clearance.measured,
     "dynamics": dynamics.measured,
+    "space": space.measured,
     "scaling": dynamics.scaling,
 }
 """Benchmarks that run alone, by their word."""

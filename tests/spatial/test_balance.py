@@ -70,8 +70,9 @@ def test_all_that_acts_on_a_body_balances_in_a_sweep(build) -> None:
 
 
 @pytest.mark.parametrize("build", [machines.bricard, machines.bennett, machines.slider_crank])
-def test_all_that_acts_on_a_body_balances_in_a_simulation(build) -> None:
-    sol = build().simulate(duration=0.7, steps=20, tolerance=1e-9)
+@pytest.mark.parametrize("formulation", ["tree", "reference"])
+def test_all_that_acts_on_a_body_balances_in_a_simulation(build, formulation: str) -> None:
+    sol = build().simulate(duration=0.7, steps=20, tolerance=1e-9, formulation=formulation)
     size = max(np.abs(sol.joint(name).force).max() for name in sol.mechanism.joints) + 1.0
     assert unbalanced(sol) < 1e-8 * size
 

@@ -15,6 +15,11 @@ from tests.spatial import machines
 FINE = 1e-12
 
 
+@pytest.fixture(params=["tree", "reference"])
+def formulation(request: pytest.FixtureRequest) -> str:
+    return request.param
+
+
 def top(
     mass: float,
     com: tuple[float, float, float],
@@ -31,10 +36,10 @@ def top(
     return m
 
 
-def test_the_heavy_top() -> None:
+def test_the_heavy_top(formulation: str) -> None:
     """Terze, Müller, Zlatar 2016, J. Comput. Nonlinear Dynam.: m 15 kg, com 1 m, spin 150 rad/s."""
     m = top(15.0, (0, 1, 0), (0.234375, 0.46875, 0.234375), np.array([0, 150, -4.61538]), (0, 0, -9.81))
-    sol = m.simulate(times=[0.0, 0.05, 0.1, 0.2], tolerance=FINE)
+    sol = m.simulate(times=[0.0, 0.05, 0.1, 0.2], tolerance=FINE, formulation=formulation)
     wanted = [
         (0.22574111752548395, 0.9734319842761463, -0.038355180178823514),
         (0.42129665892536244, 0.8945719743456064, -0.14916470056193076),
@@ -49,10 +54,10 @@ def test_the_heavy_top() -> None:
     assert np.ptp(total) < 1e-9 * abs(total[0])
 
 
-def test_kovalevskayas_top_keeps_its_constant() -> None:
+def test_kovalevskayas_top_keeps_its_constant(formulation: str) -> None:
     """Kovalevskaya 1889: (p^2 - q^2 - c g1)^2 + (2 p q - c g2)^2 stays, about the pivot I = (2, 2, 1)."""
     m = top(0.5, (1, 0, 0), (2.0, 1.5, 0.5), np.array([0.3, 0.5, 0.7]), (0, 0, -1.0))
-    sol = m.simulate(duration=20.0, steps=20, tolerance=1e-11)
+    sol = m.simulate(duration=20.0, steps=20, tolerance=1e-11, formulation=formulation)
     body, (p, q, _) = sol.body("top"), sol.body("top").w_body.T
     g1, g2, _ = body.rotation[:, 2, :].T
     c = 0.5 / 1.0
@@ -65,7 +70,7 @@ def test_kovalevskayas_top_keeps_its_constant() -> None:
 
 
 @pytest.mark.parametrize("precession", [2.550040606415521, 64.11662606025112])
-def test_a_symmetric_top_precesses_steadily(precession: float) -> None:
+def test_a_symmetric_top_precesses_steadily(precession: float, formulation: str) -> None:
     """Closed form: both rates of precession at tilt 60 degrees, l .1, I .012 about the pivot, I3 .002, w3 200 rad/s."""
     tilt = math.radians(60.0)
     axis = np.array([math.sin(tilt), 0.0, math.cos(tilt)])
@@ -76,27 +81,28 @@ def test_a_symmetric_top_precesses_steadily(precession: float) -> None:
     up = np.array([0.0, 0.0, 1.0])
     m.start_moving({"top": precession * up + (200.0 - precession * math.cos(tilt)) * axis})
     m.trace("com", body, at=0.1 * axis)
-    place = m.simulate(duration=1.0, steps=200, tolerance=1e-11).point("com").place
+    place = m.simulate(duration=1.0, steps=200, tolerance=1e-11, formulation=formulation).point("com").place
     assert np.degrees(np.ptp(np.arccos(place[:, 2] / 0.1))) < 1e-6
     turned = np.unwrap(np.arctan2(place[:, 1], place[:, 0]))
     assert turned[-1] == pytest.approx(precession, abs=1e-7)
 
 
-def test_a_tennis_racket_turns_over_and_comes_back() -> None:
+def test_a_tennis_racket_turns_over_and_comes_back(formulation: str) -> None:
     """Closed form by elliptic integrals: period 39.10573419729348 s for I = (1, 2, 3), w = (.01, 1, .01)."""
     m = Mechanism("racket", gravity=None)
     m.body("racket", 1.0, inertia=(1.0, 2.0, 3.0))
     m.start_moving({"racket": (0.01, 1.0, 0.01)})
-    w = m.simulate(times=[0.0, 39.10573419729348 / 2, 39.10573419729348], tolerance=1e-12).body("racket").w_body
+    times = [0.0, 39.10573419729348 / 2, 39.10573419729348]
+    w = m.simulate(times=times, tolerance=1e-12, formulation=formulation).body("racket").w_body
     assert np.allclose(w[2], w[0], rtol=0, atol=1e-8)
     assert w[1, 1] == pytest.approx(-1.0, abs=1e-4)
 
 
-def test_bricards_loop() -> None:
+def test_bricards_loop(formulation: str) -> None:
     """IFToMM benchmark A04: place and velocity of P3, that of Exudyn to 1e-8; energy; one redundant row."""
     m = machines.bricard()
     m.gravity = (0.0, -9.81, 0.0)
-    sol = m.simulate(times=[0.0, 0.5, 1.0, 2.0, 5.0, 10.0], tolerance=1e-11)
+    sol = m.simulate(times=[0.0, 0.5, 1.0, 2.0, 5.0, 10.0], tolerance=1e-11, formulation=formulation)
     wanted = [
         (0.968283679106769, -1.2246251594363595, 0.7501466094377354),
         (0.5105014611872203, -1.649167599394806, 0.14012311455318605),
@@ -122,7 +128,7 @@ def test_bricards_loop() -> None:
         (10, (0.1621894405667371, -0.8806080293260177, 0.09764551553752829)),
     ],
 )
-def test_a_chain_of_universal_joints(count: int, tip: tuple[float, float, float]) -> None:
+def test_a_chain_of_universal_joints(count: int, tip: tuple[float, float, float], formulation: str) -> None:
     """Bars of .1 m with universal joints (y, then z), first z rate 3 rad/s; MuJoCo's RK4 to 5e-10."""
     m = Mechanism("chain", gravity=(0, 0, -9.81))
     before = m.ground
@@ -133,13 +139,14 @@ def test_a_chain_of_universal_joints(count: int, tip: tuple[float, float, float]
     spin = {f"bar {k}": (0.0, 0.0, 3.0) for k in range(count)}
     m.start_moving(spin)
     m.trace("tip", before, at=(0.1 * count, 0, 0))
-    sol = m.simulate(times=[0.0, 1.0], tolerance=1e-11)
+    sol = m.simulate(times=[0.0, 1.0], tolerance=1e-11, formulation=formulation)
     assert np.allclose(sol.point("tip").place[-1], tip, rtol=0, atol=1e-6 if count == 10 else 1e-8)
 
 
-def test_a_driven_simulation_is_the_sweep() -> None:
+def test_a_driven_simulation_is_the_sweep(formulation: str) -> None:
     m = machines.slider_crank()
-    swept, simulated = m.sweep(duration=1.0, steps=20), m.simulate(duration=1.0, steps=20, tolerance=1e-11)
+    swept = m.sweep(duration=1.0, steps=20)
+    simulated = m.simulate(duration=1.0, steps=20, tolerance=1e-11, formulation=formulation)
     for name in ("crank", "rod", "slider"):
         assert np.allclose(swept.body(name).place, simulated.body(name).place, rtol=0, atol=1e-9)
     torque = swept.driver("motor").torque
@@ -149,14 +156,14 @@ def test_a_driven_simulation_is_the_sweep() -> None:
     assert np.allclose(simulated.work, energy - energy[0], rtol=0, atol=1e-7)
 
 
-def test_gears_count_their_turns_in_a_simulation() -> None:
+def test_gears_count_their_turns_in_a_simulation(formulation: str) -> None:
     m = Mechanism("gears", gravity=None)
     for k, x in enumerate((0.0, 0.2)):
         wheel = m.disc(f"wheel {k}", (x, 0, 0), (0, 0, 1), radius=0.05, mass=1.0, thickness=0.01)
         m.revolute(f"shaft {k}", m.ground, wheel, at=(x, 0, 0), axis=(0, 0, 1))
     m.gear_pair("teeth", "shaft 0", "shaft 1", teeth=(20, 30))
     m.start_moving({"shaft 0": 30.0})
-    sol = m.simulate(duration=2.0, steps=50, tolerance=1e-10)
+    sol = m.simulate(duration=2.0, steps=50, tolerance=1e-10, formulation=formulation)
     assert sol.joint("shaft 0").turn[-1] == pytest.approx(60.0, abs=1e-6)
     assert sol.joint("shaft 1").turn[-1] == pytest.approx(-40.0, abs=1e-6)
     assert sol.stats.position_residual < 1e-9

@@ -7,19 +7,26 @@ Of a row with a law f(t):
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import apart, inlined, kernel
+from mbsd.compiling.jit import apart, inlined, internal, kernel
 from mbsd.spatial.equations.along import bend_alongs, measure_alongs
 from mbsd.spatial.equations.distance import bend_distances, measure_distances
 from mbsd.spatial.equations.dot import bend_dots, measure_dots
 from mbsd.spatial.equations.forces import apply_forces
 from mbsd.spatial.equations.point import bend_points, measure_points
 from mbsd.spatial.equations.turn import bend_turns, measure_turns
-from mbsd.spatial.equations.vectors import carry_vectors, turn_vectors
+from mbsd.spatial.equations.vectors import carry_vectors, rotate_bodies, turn_vectors
 
 
-@apart
+@internal
 def evaluate_position(system, q, drive, ws):
     """Fill ws.phi (m,) and ws.jac (m, 6 k) at coordinates q (3 + 7 n,) and laws drive (drivers + 1, 3)."""
+    rotate_bodies(system, q, ws)
+    evaluate_rows(system, q, drive, ws)
+
+
+@internal
+def evaluate_rows(system, q, drive, ws):
+    """Fill ws.phi and ws.jac as evaluate_position does, where rotations are known."""
     carry_vectors(system, q, ws)
     for r in range(ws.phi.shape[0]):
         ws.phi[r] = -system.value[r]
@@ -45,7 +52,7 @@ def evaluate_nu(system, drive, out):
         out[system.driven[n, 0]] = drive[system.driven[n, 1], 1]
 
 
-@apart
+@internal
 def evaluate_gamma(system, v, drive, ws, out):
     """Fill out (m,) with gamma at velocities v (3 + 6 n,) and the place last evaluated, and ws.turn_rate."""
     turn_vectors(system, v, ws)

@@ -81,12 +81,11 @@ class DrivenMotion(NamedTuple):
 def extent(delta, per_metre):
     """Return the largest part of a change (3 + 6 n,) in sizes and rad; NaN counts as infinite."""
     largest = 0.0
-    for c in range(3, delta.shape[0]):
-        part = abs(delta[c])
-        if c % 6 > 2:  # entries 3, 4, 5 of six are places, since ground has three in front
-            part *= per_metre
-        if not part <= largest:
-            largest = part if part == part else np.inf
+    for d in range(3, delta.shape[0], 6):
+        way = max(abs(delta[d]), abs(delta[d + 1]), abs(delta[d + 2])) * per_metre
+        turn = max(abs(delta[d + 3]), abs(delta[d + 4]), abs(delta[d + 5]))
+        total = delta[d] + delta[d + 1] + delta[d + 2] + delta[d + 3] + delta[d + 4] + delta[d + 5]
+        largest = max(largest, way, turn) if total == total else np.inf
     return largest
 
 
@@ -156,11 +155,13 @@ def _unexplained(q, dq, ddq, k, h, per_metre):
     largest = 0.0
     half = 0.5 * h
     twelfth = h * h / 12.0
-    for c in range(3, q.shape[1]):
-        gap = q[k, c] - q[k - 1, c] - half * (dq[k, c] + dq[k - 1, c]) + twelfth * (ddq[k, c] - ddq[k - 1, c])
-        gap = abs(gap) * (per_metre if (c - 3) % 7 < 3 else 2.0)
-        if not gap <= largest:
-            largest = gap if gap == gap else np.inf
+    now, before, rate, rate_before, bend, bend_before = q[k], q[k - 1], dq[k], dq[k - 1], ddq[k], ddq[k - 1]
+    for b in range(3, q.shape[1], 7):
+        for c in range(b, b + 7):
+            gap = now[c] - before[c] - half * (rate[c] + rate_before[c]) + twelfth * (bend[c] - bend_before[c])
+            gap = abs(gap) * (per_metre if c < b + 3 else 2.0)
+            if not gap <= largest:
+                largest = gap if gap == gap else np.inf
     return largest
 
 
@@ -168,10 +169,12 @@ def _unexplained(q, dq, ddq, k, h, per_metre):
 def _way(q, k, per_metre):
     """Return how far step k leads, in sizes and rad."""
     largest = 0.0
-    for c in range(3, q.shape[1]):
-        part = abs(q[k, c] - q[k - 1, c]) * (per_metre if (c - 3) % 7 < 3 else 2.0)
-        if not part <= largest:
-            largest = part if part == part else np.inf
+    now, before = q[k], q[k - 1]
+    for b in range(3, q.shape[1], 7):
+        for c in range(b, b + 7):
+            part = abs(now[c] - before[c]) * (per_metre if c < b + 3 else 2.0)
+            if not part <= largest:
+                largest = part if part == part else np.inf
     return largest
 
 

@@ -18,12 +18,10 @@ from mbsd.kinematics.newton import BRANCH_DOUBT, DONE
 from mbsd.kinematics.steps import Steps
 from mbsd.kinematics.sweep import sweep_times
 from mbsd.spatial.arrays.packing import Packed
-from mbsd.spatial.equations.evaluation import wrenches_along
 from mbsd.spatial.kinematics import newton
 from mbsd.spatial.kinematics.close import gap_in_words
 from mbsd.spatial.kinematics.mobility import better_rows_at
 from mbsd.spatial.kinematics.prepared import Prepared, planned, prepare
-from mbsd.spatial.kinematics.sharing import least_norm
 from mbsd.spatial.model.mechanism import Model
 from mbsd.spatial.results.solution import Solution
 
@@ -38,18 +36,13 @@ def sweep(m: Model, duration: float | None, steps: int, times: Sequence[float] |
     ready = prepare(m, float(grid[0]), float(grid[-1]))
     same_fields = ready.packed
     taken = Steps(same_fields, grid)
-    motion = _march(ready, taken)
-    if ready.mobility.redundant_rows:
-        lam = least_norm(ready.packed, ready.laws, motion)
-        wrench = np.zeros((len(motion.times), len(m.joints), 6))
-        wrenches_along(ready.packed.system, motion.drives, motion.q, ready.packed.ws, lam, wrench)
-        motion = motion._replace(lam=lam, wrench=wrench)
+    motion = march(ready, taken, not ready.mobility.redundant_rows)
     return Solution(
         m, ready.packed, motion, taken.wanted, ready.mobility, ready.laws, dict(m.starts), inserted_steps=taken.inserted
     )
 
 
-def _room(ready: Prepared, steps: Steps) -> newton.DrivenMotion:
+def _room(ready: Prepared, steps: Steps, reactions: bool) -> newton.DrivenMotion:
     """Return arrays for a motion at all steps, with the start in their first rows."""
     packed, count = ready.packed, len(steps.times)
     velocities, rows = packed.freedoms + 3, len(packed.ws.phi)
@@ -57,7 +50,7 @@ def _room(ready: Prepared, steps: Steps) -> newton.DrivenMotion:
     q[0] = ready.q0
     turn = np.zeros((count, len(ready.turns)))
     turn[0] = ready.turns
-    balanced = 0 if ready.mobility.redundant_rows else count
+    balanced = count if reactions else 0
     return newton.DrivenMotion(
         times=steps.times, drives=steps.drives, stride=steps.stride, q=q, dq=dq, ddq=ddq,
         v=np.zeros((count, velocities)), a=np.zeros((count, velocities)),
@@ -67,10 +60,13 @@ def _room(ready: Prepared, steps: Steps) -> newton.DrivenMotion:
     )  # fmt: skip
 
 
-def _march(ready: Prepared, steps: Steps) -> newton.DrivenMotion:
-    """Return the motion at all steps. Raises what says why it cannot go on."""
+def march(ready: Prepared, steps: Steps, reactions: bool) -> newton.DrivenMotion:
+    """Return the motion at all steps, with or without reactions. Raises what says why it cannot go on.
+
+    Reactions are found elsewhere where joints repeat each other.
+    """
     packed = ready.packed
-    motion = _room(ready, steps)
+    motion = _room(ready, steps, reactions)
     first, chosen, part = 0, 0, NEARER if ready.mobility.redundant_rows else 0.0
     while True:
         status, index = newton.sweep(
@@ -82,7 +78,7 @@ def _march(ready: Prepared, steps: Steps) -> newton.DrivenMotion:
         if index == 0:
             raise _refusal(packed, status, motion, 0)
         if steps.follow_laws():
-            motion, first, chosen = _room(ready, steps), 0, 0
+            motion, first, chosen = _room(ready, steps, reactions), 0, 0
             continue
         if part and index - 1 > chosen:
             packed.ws.guess[:] = motion.turn[index - 1]

@@ -26,7 +26,7 @@ from mbsd.base.quantity import counted
 from mbsd.results.views import DriverView, EnergyView, Mobility, Stats
 from mbsd.spatial.model.body import Marker
 from mbsd.spatial.model.joint import Joint
-from mbsd.spatial.results.forces import ForceView, force_view
+from mbsd.spatial.results.forces import ForceView, force_values, force_view
 from mbsd.spatial.results.frames import (
     BodyMotion,
     body_motion,
@@ -35,6 +35,7 @@ from mbsd.spatial.results.frames import (
     slides_between,
     turns_between,
 )
+from mbsd.spatial.results.reactions import with_reactions
 from mbsd.spatial.results.residuals import residuals
 from mbsd.spatial.results.views import FrameView, JointView
 
@@ -69,6 +70,8 @@ class Solution(Suggesting):
     """(T,) of drivers since the start (J), of a simulation."""
     changes: tuple[str, ...] = ()
     """Changes of the given start that made a simulation consistent."""
+    formulation: str = ""
+    """Coordinates of a simulation: "reference" or "tree"."""
 
     @cached_property
     def t(self) -> np.ndarray:
@@ -93,7 +96,12 @@ class Solution(Suggesting):
     @cached_property
     def lam(self) -> np.ndarray:
         """(T, m) multipliers."""
-        return self.motion.lam[self.wanted]
+        return self._whole.lam[self.wanted]
+
+    @cached_property
+    def _whole(self) -> Any:
+        """The motion with multipliers and wrenches, which are found when they are first asked for."""
+        return with_reactions(self.packed, self.laws, self.motion, self.mobility.redundant_rows)
 
     def body(self, name: str) -> FrameView:
         """Return the motion of a body's frame."""
@@ -115,7 +123,7 @@ class Solution(Suggesting):
         """Return place, reaction, turn and slide of a joint."""
         joints = self.packed.passive_joints
         k = self._index(name, [joint.name for joint in joints], "joint")
-        joint, wrench = joints[k], self.motion.wrench[self.wanted, k]
+        joint, wrench = joints[k], self._whole.wrench[self.wanted, k]
         i, j = (marker_frame(marker, self._steps_of(marker)) for marker in (joint.i, joint.j))
         return JointView(
             name=name,
@@ -141,7 +149,7 @@ class Solution(Suggesting):
     def force(self, name: str) -> ForceView:
         """Return what a force measures, its effort and power."""
         k = self._index(name, [force.name for force in self.packed.forces], "force")
-        return force_view(self.packed, k, self.motion, self.wanted)
+        return force_view(self.packed, k, self._whole, self.wanted)
 
     @cached_property
     def energy(self) -> EnergyView:
@@ -155,7 +163,7 @@ class Solution(Suggesting):
             kinetic = kinetic + 0.5 * (system.inertia[b] * spin**2).sum(axis=1)
         potential = -(system.mass[1:] * (poses[..., :3] @ system.gravity)).sum(axis=1)
         for k, force in enumerate(self.packed.forces):
-            values = force_view(self.packed, k, self.motion, self.wanted).values
+            values, _ = force_values(self.packed, k, self.motion, self.wanted)
             for push, x in zip(force.pushes, values.T, strict=True):
                 potential = potential + 0.5 * push.stiffness * (x - push.free) ** 2
         return EnergyView(kinetic, potential)
@@ -164,7 +172,7 @@ class Solution(Suggesting):
     def stats(self) -> Stats:
         """How well the motion fulfils its equations: largest residuals over all steps and rows."""
         steps = self.steps or len(self.motion.times)
-        return Stats(*residuals(self.packed, self.laws, self.motion), steps, self.inserted_steps)
+        return Stats(*residuals(self.packed, self.laws, self._whole), steps, self.inserted_steps)
 
     def _begin(self, joint: Joint) -> float:
         """Return the turn (rad) near which a joint starts, as a driver or start_near has it."""

@@ -61,16 +61,18 @@ class Mechanism(Building):
         steps: int = 360,
         times: Sequence[float] | np.ndarray | None = None,
         tolerance: float = 1e-7,
+        event_rows: bool = False,
     ) -> Solution:
         """Simulate the motion under gravity from ``start_near`` and ``start_moving``, drivers imposed.
 
         ``steps`` equal output steps over ``duration`` seconds, both ends included; ``times`` (s), rising, replaces
-        both. ``tolerance`` is relative to the mechanism's size, to 1 rad, and to speeds. Raises MobilityError for a
-        body without mass or inertia, SimulationError where the integration cannot go on.
+        both. ``tolerance`` is relative to the mechanism's size, to 1 rad, and to speeds. ``event_rows`` adds two rows
+        at every event, right before and after it; a terminal event is the last row. Raises MobilityError for a body
+        without mass or inertia, SimulationError where the integration cannot go on.
         """
         from mbsd.spatial.dynamics.simulate import simulate
 
-        return simulate(self, duration, steps, times, tolerance)
+        return simulate(self, duration, steps, times, tolerance, event_rows)
 
     def __repr__(self) -> str:
         bodies, joints, drivers = len(self.bodies) - 1, len(self.joints), len(self.drivers)

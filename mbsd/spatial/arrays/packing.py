@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -14,7 +14,7 @@ from mbsd.spatial.arrays.tables import Tables
 from mbsd.spatial.equations.evaluation import measure
 from mbsd.spatial.equations.system import System, Workspace, workspace_for
 from mbsd.spatial.model.body import Body
-from mbsd.spatial.model.force import Force
+from mbsd.spatial.model.force import Force, Push
 from mbsd.spatial.model.joint import Joint
 from mbsd.spatial.model.mechanism import Model
 from mbsd.spatial.model.rotation import euler_parameters
@@ -44,6 +44,8 @@ class Packed:
     """A length of the mechanism (m)."""
     forces: Sequence[Force] = field(default=())
     """Forces, whose rows stand behind the h rows of joints and drivers."""
+    watched: Mapping[str, int] = field(default_factory=dict)
+    """Numbers of the turns that are counted for events, by the names of joints."""
 
     @property
     def body_names(self) -> list[str]:
@@ -164,6 +166,8 @@ def pack(m: Model, extra: Sequence[tuple[Joint, Row]] = ()) -> Packed:
         driver_rows += row.count * reacts
     held, forces = len(row_joint), [] if extra else list(m.forces.values())
     pushes = [push for force in forces for push in force.pushes]
+    turning = [joint for joint in m.joints.values() if joint.kind.turns and m.events and not extra]
+    pushes += [Push(turn(joint.i, joint.j)) for joint in turning]
     for k, push in enumerate(pushes):
         tables.add(push.row, held + k)
     values += [0.0] * len(pushes)
@@ -187,6 +191,7 @@ def pack(m: Model, extra: Sequence[tuple[Joint, Row]] = ()) -> Packed:
         name=m.name, bodies=bodies, joints=joints, motions=motions, row_joint=np.array(row_joint, np.int64),
         row_unit=units, driver_rows=driver_rows, system=system, ws=workspace_for(system), size=size_of(m),
         forces=forces,
+        watched={joint.name: len(system.turn) - len(turning) + k for k, joint in enumerate(turning)},
     )  # fmt: skip
 
 

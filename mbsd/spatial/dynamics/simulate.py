@@ -12,16 +12,19 @@ from mbsd.arrays.laws import compiled_laws, refuse_bad_laws
 from mbsd.base.errors import InitialConditionWarning, MobilityError, SimulationError
 from mbsd.base.quantity import counted
 from mbsd.base.warning import warn
+from mbsd.dynamics.events.loop import OVER, run_events
 from mbsd.dynamics.integrators.dop853 import DOP853
 from mbsd.dynamics.reference.arrays import Scratch, full_matrices
 from mbsd.dynamics.simulate import output_times, refuse_bad_steps
-from mbsd.dynamics.state import ACCEPTED, CHOOSE, REACHED, STEP_TOO_SMALL, TIME, Settings, output_for, start_state
+from mbsd.dynamics.state import ACCEPTED, CHOOSE, NEXT, REACHED, STEP_TOO_SMALL, TIME, Settings, output_for, start_state
 from mbsd.equations.interactions.switching import WIDTH
 from mbsd.kinematics.pose.held_values import independent_rows
 from mbsd.kinematics.pose.mobility import better_rows
+from mbsd.model.event import Happening
 from mbsd.results.views import Mobility
 from mbsd.spatial.arrays.packing import Packed
 from mbsd.spatial.dynamics.envelope import envelope_of
+from mbsd.spatial.dynamics.events import Events
 from mbsd.spatial.dynamics.formulation import SpaceDynamics, Switches, Table
 from mbsd.spatial.dynamics.start import start_velocities
 from mbsd.spatial.equations.evaluation import wrenches_along
@@ -44,13 +47,14 @@ STEPS = 10**9
 
 
 def simulate(
-    m: Model, duration: float | None, steps: int, times: Sequence[float] | np.ndarray | None, tolerance: float
-) -> Solution:
+    m: Model, duration: float | None, steps: int, times: Sequence[float] | np.ndarray | None, tolerance: float,
+    event_rows: bool = False,
+) -> Solution:  # fmt: skip
     """Return a simulation; see :meth:`mbsd.spatial.mechanism.Mechanism.simulate`."""
     same_fields: Any = m
     grid = output_times(same_fields, duration, steps, times)
     refuse_bad_steps(same_fields, grid, tolerance, None)
-    return _Run(m, grid, tolerance).followed()
+    return _Run(m, grid, tolerance, event_rows).followed()
 
 
 @dataclass
@@ -60,6 +64,7 @@ class _Run:
     m: Model
     grid: np.ndarray
     tolerance: float
+    event_rows: bool = False
 
     def __post_init__(self) -> None:
         start, end = float(self.grid[0]), float(self.grid[-1])
@@ -82,6 +87,8 @@ class _Run:
         self.y[1, : len(begun.v)] = _to_bodies(packed, self.q, begun.v)
         packed.ws.guess[:] = turns
         self.turns = np.zeros((len(self.grid), len(turns)))
+        self.counted = np.zeros(1 + len(turns))
+        self.counted[0] = start
         jac, self.kept = self._rows(self.q)
         _refuse_superfluous_drivers(packed, independent_rows(jac), self.mobility)
 
@@ -107,6 +114,7 @@ class _Run:
             system=packed.system, laws=self.laws, loads=Switches(np.zeros((1, WIDTH))), schur=none, sliding=none,
             envelope=envelope, factors=factors, inertia=inertia, inverse=inverse, weight=weight, per_size=per_size,
             world=np.zeros(6 * nb - 3), pushed=np.zeros(len(packed.ws.phi)), limit=np.array([limit]), turns=self.turns,
+            counted=self.counted,
         )  # fmt: skip
 
     def _scratch(self) -> Scratch:
@@ -136,9 +144,27 @@ class _Run:
         state = start_state(self.y, len(packed.ws.phi), float(self.grid[0]))
         out = output_for(self.grid, len(self.q), len(packed.ws.phi))
         scratch, settings, dyn = self._scratch(), self._settings(), self._dynamics(limit)
+        watched, none = list(self.m.events.values()), np.zeros(0)
+        span = end - float(self.grid[0])
+        events = (
+            Events(self.packed, watched, state, settings.longest, span, self.counted, self.event_rows)
+            if watched
+            else None
+        )
+
+        def advance(contacts: Any, most: int) -> int:
+            return run_events(dyn, scratch, state, settings, contacts, out, end, most, none, none)
+
         while True:
-            status = DOP853.advance(dyn, scratch, state, out, settings, end, STEPS)
-            if status == REACHED:
+            if events is None:
+                status = DOP853.advance(dyn, scratch, state, out, settings, end, STEPS)
+            else:  # rows are chosen between steps, never while one is tried
+                choosing, dyn.limit[0] = dyn.limit[0], 0.0
+                status = events.follow(advance, state, end, choosing > 0.0)
+                dyn.limit[0] = choosing
+                if status == CHOOSE and not scratch.report[0] < choosing:
+                    continue
+            if status in (REACHED, OVER):
                 break
             if status != CHOOSE:
                 raise self._refusal(status, state)
@@ -148,7 +174,26 @@ class _Run:
             else:
                 self.kept, limit = best, OWN
             dyn = self._dynamics(limit)
-        return self._solution(out, int(state.count[ACCEPTED]))
+        if events is not None:
+            out = self._with_rows(out, int(state.count[NEXT]), events)
+        happened = () if events is None else tuple(events.happenings)
+        return self._solution(out, int(state.count[ACCEPTED]), happened)
+
+    def _with_rows(self, out: Any, written: int, events: Events) -> Any:
+        """Return outputs that were written, with those beside events between them."""
+        rows = events.rows
+        t, y, a, lam, work, turns = (
+            np.array([row[k] for row in rows]).reshape(len(rows), *part.shape[1:])
+            for k, part in enumerate((out.t, out.y, out.a, out.lam, out.work, self.turns))
+        )
+        parts = [(out.t, t), (out.y, y), (out.a, a), (out.lam, lam), (out.work, work), (out.margin, np.ones(len(t)))]
+        order = np.argsort(np.concatenate([out.t[:written], t]), kind="stable")
+        self.turns = np.concatenate([self.turns[:written], turns])[order]
+        whole = output_for(np.zeros(0), 0, 0)._make(
+            np.concatenate([one[:written], other])[order] for one, other in parts
+        )
+        self.grid = whole.t
+        return whole
 
     def _refusal(self, status: int, state: Any) -> SimulationError:
         why = "its steps shrink to nothing" if status == STEP_TOO_SMALL else "its numbers are no longer finite"
@@ -157,7 +202,7 @@ class _Run:
             "is singular there, or bodies lack inertia; look at the joints in this pose"
         )
 
-    def _solution(self, out: Any, steps: int) -> Solution:
+    def _solution(self, out: Any, steps: int, happened: tuple[Happening, ...]) -> Solution:
         packed, count = self.packed, len(self.grid)
         q, body = np.ascontiguousarray(out.y[:, 0]), packed.freedoms + 3
         v, a = (_to_worlds(packed, q, part[:, :body]) for part in (out.y[:, 1], out.a))
@@ -172,7 +217,7 @@ class _Run:
         wrenches_along(packed.system, drives, q, packed.ws, motion.lam, motion.wrench)
         return Solution(
             self.m, packed, motion, np.ones(count, bool), self.mobility, self.laws, dict(self.m.starts),
-            steps=steps, work=out.work, changes=self.changes,
+            steps=steps, work=out.work, changes=self.changes, events=happened,
         )  # fmt: skip
 
 

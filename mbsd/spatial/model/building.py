@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mbsd.spatial.model.drivers import drive_distance, drive_slide, drive_turn
+from mbsd.spatial.model.events import event
 from mbsd.spatial.model.forces.actuator import actuator
 from mbsd.spatial.model.forces.drag import drag
 from mbsd.spatial.model.forces.spring import spring
@@ -62,3 +63,5 @@ class Building(Model):
     drive_turn = drive_turn
     drive_slide = drive_slide
     drive_distance = drive_distance
+
+    event = event

@@ -23,6 +23,7 @@ import numpy as np
 from mbsd.base.errors import ModelError
 from mbsd.base.names import Suggesting, no_such
 from mbsd.base.quantity import counted
+from mbsd.model.event import Happening
 from mbsd.results.views import DriverView, EnergyView, Mobility, Stats
 from mbsd.spatial.model.body import Marker
 from mbsd.spatial.model.joint import Joint
@@ -69,6 +70,8 @@ class Solution(Suggesting):
     """(T,) of drivers since the start (J), of a simulation."""
     changes: tuple[str, ...] = ()
     """Changes of the given start that made a simulation consistent."""
+    events: tuple[Happening, ...] = ()
+    """What happened in a simulation, in order."""
 
     @cached_property
     def t(self) -> np.ndarray:

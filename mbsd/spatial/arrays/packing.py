@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from mbsd.base.arguments import law_of
+from mbsd.compiling.callback import Callback
 from mbsd.model.laws import Motion
 from mbsd.spatial.arrays.tables import Tables
 from mbsd.spatial.equations.evaluation import measure
@@ -44,6 +45,8 @@ class Packed:
     """A length of the mechanism (m)."""
     forces: Sequence[Force] = field(default=())
     """Forces, whose rows stand behind the h rows of joints and drivers."""
+    callbacks: Sequence[Callback] = field(default=())
+    """Functions of the user in forces."""
     watched: Mapping[str, int] = field(default_factory=dict)
     """Numbers of the turns that are counted for events, by the names of joints."""
 
@@ -98,6 +101,13 @@ class Packed:
             with law_of(f"{self.name}: driver '{driver.name}'"):
                 out[:, k] = motion(times)
         return out
+
+    def check_callbacks(self, accepted: bool) -> None:
+        """Raise what functions of the user raised, in steps that were ``accepted`` only what no step could refuse."""
+        for callback in self.callbacks:
+            if accepted:
+                callback.forget()
+            callback.check()
 
     def settle_laws(self, start: float, end: float) -> None:
         """Make the laws ready for times ``start`` .. ``end`` (s)."""
@@ -173,12 +183,15 @@ def pack(m: Model, extra: Sequence[tuple[Joint, Row]] = ()) -> Packed:
     values += [0.0] * len(pushes)
     wrench += [(-1, 0)] * len(pushes)
     arms = [tables.place(joint.j) for joint in joints[:passive]]
+    callbacks: list[Callback] = []
+    calls = _calls_of(m.name, forces, tables, callbacks)
     system = System(
         mass=np.array([body.mass for body in bodies]),
         inertia=np.array([body.principal[0] for body in bodies]),
         gravity=np.array(m.gravity, float),
         **tables.arrays(held + len(pushes)),
         held=held,
+        **calls,
         force=np.array(_laws_of(forces, held, len(m.drivers)), np.int64).reshape(-1, 2),
         push=np.array([(p.stiffness, p.free, p.damping, p.amount) for p in pushes], float).reshape(-1, 4),
         value=np.array(values, float),
@@ -190,9 +203,48 @@ def pack(m: Model, extra: Sequence[tuple[Joint, Row]] = ()) -> Packed:
     return Packed(
         name=m.name, bodies=bodies, joints=joints, motions=motions, row_joint=np.array(row_joint, np.int64),
         row_unit=units, driver_rows=driver_rows, system=system, ws=workspace_for(system), size=size_of(m),
-        forces=forces,
+        forces=forces, callbacks=callbacks,
         watched={joint.name: len(system.turn) - len(turning) + k for k, joint in enumerate(turning)},
     )  # fmt: skip
+
+
+def _calls_of(name: str, forces: Sequence[Force], tables: Tables, callbacks: list[Callback]) -> dict[str, np.ndarray]:
+    """Return the fields of a System for forces by functions; those of the user are put into ``callbacks``."""
+    table, places, turns, inputs = [], list[int](), list[np.ndarray](), list[float]()
+    for force in forces:
+        call = force.call
+        if call is None:
+            continue
+        frames = len(call.frames)
+        function = call.function
+        if not hasattr(function, "address") or call.is_users:  # laws are plain Python where nothing is compiled
+            parts = (7 * frames, 6 * frames) if call.is_users else (13 * frames + len(call.numbers),)
+            callbacks.append(
+                Callback(function if call.is_users else filling(function, 6 * frames + 1), parts,
+                         6 * frames + (not call.is_users), f"{name}: force '{force.name}'")
+            )  # fmt: skip
+            function = callbacks[-1]
+        table.append((function.address, len(places), frames, len(inputs)))
+        places += [tables.place(marker) for marker in call.frames]
+        turns += [euler_parameters(marker.body.principal[1].T @ marker.axes) for marker in call.frames]
+        inputs += [*[0.0] * (13 * frames), *call.numbers]
+    return {
+        "call": np.array(table, np.int64).reshape(-1, 4),
+        "frame_place": np.array(places, np.int64),
+        "frame_turn": np.array(turns).reshape(-1, 4),
+        "inputs": np.array(inputs, float),
+    }
+
+
+def filling(function: Callable[..., None], count: int) -> Callable[[float, np.ndarray], np.ndarray]:
+    """Return a function that returns what a law would fill in."""
+
+    def returned(t: float, inputs: np.ndarray) -> np.ndarray:
+        out = np.zeros(count)
+        function(t, inputs, out)
+        return out
+
+    return returned
 
 
 def _laws_of(forces: Sequence[Force], first: int, drivers: int) -> list[tuple[int, int]]:

@@ -139,8 +139,8 @@ def accelerate(dyn, scratch, t, state, a, lam):
     power = 0.0
     for c in range(ws.load.shape[0]):
         ws.load[c] = 0.0
-    if dyn.system.force.shape[0] > 0:
-        power = apply_forces(dyn.system, dyn.laws, t, dyn.world, ws, ws.load, dyn.pushed)
+    if dyn.system.force.shape[0] + dyn.system.call.shape[0] > 0:
+        power = apply_forces(dyn.system, dyn.laws, t, state[0], dyn.world, ws, ws.load, dyn.pushed)
     _to_body_axes(dyn, ws)
     scratch.report[0] = factor(dyn.envelope, dyn.factors, ws.jac, dyn.inverse)
     for c in range(force.shape[0]):

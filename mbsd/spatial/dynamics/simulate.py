@@ -164,6 +164,7 @@ class _Run:
                 dyn.limit[0] = choosing
                 if status == CHOOSE and not scratch.report[0] < choosing:
                     continue
+            packed.check_callbacks(status in (REACHED, OVER, CHOOSE))
             if status in (REACHED, OVER):
                 break
             if status != CHOOSE:

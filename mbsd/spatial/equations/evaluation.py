@@ -130,8 +130,8 @@ def tabulate_loads(system, laws, times, drives, q, v, a, turns, ws, load, lam):
             ws.guess[n] = turns[k, n]
         evaluate_position(system, q[k], drives[k], ws)
         find_loads(system, v[k], a[k], ws, load[k])
-        if system.force.shape[0] > 0:
-            apply_forces(system, laws, times[k], v[k], ws, load[k], lam[k])
+        if system.force.shape[0] + system.call.shape[0] > 0:
+            apply_forces(system, laws, times[k], q[k], v[k], ws, load[k], lam[k])
 
 
 @kernel

@@ -60,6 +60,14 @@ class System(NamedTuple):
     """(f, 2) row and law of each force; law 0: none."""
     push: Any
     """(f, 4) its stiffness, free value, damping and constant amount."""
+    call: Any
+    """(c, 4) address of the function of each force that has one, its first frame, how many it has, first input."""
+    frame_place: Any
+    """(f,) place of each frame, as arms number them."""
+    frame_turn: Any
+    """(f, 4) Euler parameters from each frame to principal axes."""
+    inputs: Any
+    """(i,) inputs of all functions, whose numbers stay."""
     wrench: Any
     """(m, 2) joint of each row of joints, and column of its second body; -1: a driver's."""
     joint_arm: Any
@@ -105,6 +113,10 @@ class Workspace(NamedTuple):
     """(3,) value of a law with two derivatives."""
     load: Any
     """(3 + 6 n,) force and torque in the world that are left for multipliers."""
+    inputs: Any
+    """(i,) of functions of forces; see calls.py."""
+    outputs: Any
+    """(c, o) what they gave last."""
 
 
 def workspace_for(system: System) -> Workspace:
@@ -132,4 +144,6 @@ def workspace_for(system: System) -> Workspace:
         delta=np.zeros((2, 6 * bodies - 3)),
         law=np.zeros(3),
         load=np.zeros(6 * bodies - 3),
+        inputs=system.inputs.copy(),
+        outputs=np.zeros((len(system.call), 6 * int(system.call[:, 2].max(initial=0)) + 1)),
     )

@@ -201,8 +201,8 @@ def _begin(motion, ws, k, h, pose):
 def _balance(system, laws, seq, fac, ws, motion, k):
     """Fill multipliers and wrenches of step k."""
     find_loads(system, motion.v[k], motion.a[k], ws, ws.load)
-    if system.force.shape[0] > 0:
-        apply_forces(system, laws, motion.times[k], motion.v[k], ws, ws.load, motion.lam[k])
+    if system.force.shape[0] + system.call.shape[0] > 0:
+        apply_forces(system, laws, motion.times[k], motion.q[k], motion.v[k], ws, ws.load, motion.lam[k])
     solve_transposed(seq, fac, ws.load, motion.lam[k])
     find_wrenches(system, ws, motion.lam[k], motion.wrench[k])
 

@@ -39,6 +39,7 @@ def sweep(m: Model, duration: float | None, steps: int, times: Sequence[float] |
     same_fields = ready.packed
     taken = Steps(same_fields, grid)
     motion = _march(ready, taken)
+    ready.packed.check_callbacks(accepted=False)
     if ready.mobility.redundant_rows:
         lam = least_norm(ready.packed, ready.laws, motion)
         wrench = np.zeros((len(motion.times), len(m.joints), 6))

@@ -5,10 +5,13 @@ from __future__ import annotations
 from mbsd.spatial.model.drivers import drive_distance, drive_slide, drive_turn
 from mbsd.spatial.model.events import event
 from mbsd.spatial.model.forces.actuator import actuator
+from mbsd.spatial.model.forces.bushing import bushing
+from mbsd.spatial.model.forces.contact import contact, tyre
 from mbsd.spatial.model.forces.drag import drag
 from mbsd.spatial.model.forces.spring import spring
 from mbsd.spatial.model.forces.torque import torque
 from mbsd.spatial.model.forces.torsion_spring import torsion_spring
+from mbsd.spatial.model.forces.user_force import user_force
 from mbsd.spatial.model.joints.belt import belt
 from mbsd.spatial.model.joints.constant_velocity import constant_velocity
 from mbsd.spatial.model.joints.cylindrical import cylindrical
@@ -59,6 +62,10 @@ class Building(Model):
     torque = torque
     actuator = actuator
     drag = drag
+    bushing = bushing
+    contact = contact
+    tyre = tyre
+    user_force = user_force
 
     drive_turn = drive_turn
     drive_slide = drive_slide

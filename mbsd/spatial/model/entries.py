@@ -28,7 +28,13 @@ def markers_given(
 
     ``axes`` (3, 3) are those of the world that both get. Raises ModelError.
     """
-    what = f"{m.name}: joint '{name}'"
+    return force_markers(m, f"{m.name}: joint '{name}'", first, second, at, axes)
+
+
+def force_markers(
+    m: Model, what: str, first: Fixing, second: Fixing, at: Place | None, axes: np.ndarray | None
+) -> tuple[Marker, Marker]:
+    """Return the markers of what acts between two bodies, as :func:`markers_given` does; ``what`` names it."""
     given = [part for part in (first, second) if isinstance(part, Marker)]
     if len(given) == 2:
         if at is not None or axes is not None:

@@ -192,6 +192,7 @@ def pack(m: Model, extra: Sequence[tuple[Joint, Row]] = ()) -> Packed:
         **tables.arrays(held + len(pushes)),
         held=held,
         **calls,
+        **_frictions_of(forces, held, joints, row_joint, wrench, bodies, arms),
         force=np.array(_laws_of(forces, held, len(m.drivers)), np.int64).reshape(-1, 2),
         push=np.array([(p.stiffness, p.free, p.damping, p.amount) for p in pushes], float).reshape(-1, 4),
         value=np.array(values, float),
@@ -206,6 +207,26 @@ def pack(m: Model, extra: Sequence[tuple[Joint, Row]] = ()) -> Packed:
         forces=forces, callbacks=callbacks,
         watched={joint.name: len(system.turn) - len(turning) + k for k, joint in enumerate(turning)},
     )  # fmt: skip
+
+
+def _frictions_of(
+    forces: Sequence[Force], held: int, joints: Sequence[Joint], row_joint: list[int], wrench: list[tuple[int, int]],
+    bodies: list[Body], arms: list[int],
+) -> dict[str, np.ndarray]:  # fmt: skip
+    """Return the fields of a System for friction of joints."""
+    table, numbers, row = [], [], held
+    for force in forces:
+        if force.kind.rubs is not None and force.joint is not None:
+            joint = joints.index(force.joint)
+            own = [r for r, k in enumerate(row_joint) if k == joint]
+            second = bodies.index(force.joint.j.body)
+            table.append((row, own[0], own[-1] + 1, wrench[own[0]][1], second, arms[joint]))
+            numbers.append(force.kind.rubs(force))
+        row += len(force.pushes)
+    return {
+        "rub": np.array(table, np.int64).reshape(-1, 6),
+        "rub_number": np.array(numbers, float).reshape(-1, 8),
+    }
 
 
 def _calls_of(name: str, forces: Sequence[Force], tables: Tables, callbacks: list[Callback]) -> dict[str, np.ndarray]:

@@ -16,13 +16,22 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from mbsd.compiling.jit import apart, inlined, internal
+from mbsd.compiling.jit import apart, inlined, internal, lazy
 from mbsd.dynamics.formulation import add_formulation, record_output
 from mbsd.dynamics.state import NEXT, TIME, WORK
 from mbsd.equations.laws import evaluate_laws
 from mbsd.spatial.dynamics.envelope import factor, solve
 from mbsd.spatial.equations.evaluation import evaluate_gamma, evaluate_nu, evaluate_position
 from mbsd.spatial.equations.forces import along_row, apply_forces, push_row
+from mbsd.spatial.equations.friction import (
+    MOST_PASSES,
+    ROW,
+    add_change,
+    begin_friction,
+    correct_normals,
+    end_friction,
+    find_normals,
+)
 from mbsd.spatial.equations.turn import TURN, bend_turns
 from mbsd.spatial.equations.vectors import turn_vectors
 
@@ -71,17 +80,26 @@ class SpaceDynamics(NamedTuple):
     """(1 + turns,) when turns were counted last (s), and their rates then (rad/s)."""
 
 
+@inlined
+def _turn_arm(ws, row, c, b):
+    """Turn the torque at row[c] from the world into the axes of body b."""
+    m = ws.rotation[b]
+    x, y, z = row[c], row[c + 1], row[c + 2]
+    for k in range(3):
+        row[c + k] = m[0, k] * x + m[1, k] * y + m[2, k] * z
+
+
 @internal
 def _to_body_axes(dyn, ws):
-    """Turn the torques of J from the world into the axes of their bodies."""
+    """Turn the torques of J, of rows in use, from the world into the axes of their bodies."""
     env = dyn.envelope
     for e in range(env.arm.shape[0]):
-        row = ws.jac[env.rows[env.arm[e, 0]]]
-        c = env.arm[e, 1] + 3
-        m = ws.rotation[env.arm[e, 2]]
-        x, y, z = row[c], row[c + 1], row[c + 2]
-        for k in range(3):
-            row[c + k] = m[0, k] * x + m[1, k] * y + m[2, k] * z
+        _turn_arm(ws, ws.jac[env.rows[env.arm[e, 0]]], env.arm[e, 1] + 3, env.arm[e, 2])
+    for n in range(dyn.system.rub.shape[0]):
+        r = dyn.system.rub[n, ROW]
+        for side in range(dyn.system.row_body.shape[1]):
+            if dyn.system.row_body[r, side] > 0:
+                _turn_arm(ws, ws.jac[r], 6 * side + 3, dyn.system.row_body[r, side])
 
 
 @internal
@@ -124,6 +142,31 @@ def _respond(dyn, ws, force, gamma, a, lam):
         a[c] = dyn.inverse[c] * force[c]
 
 
+@lazy(float)
+def _rub(dyn, ws, v, force, a, lam):
+    """Add friction of joints to a and lam (m,), found together with the reactions; returns its power (W)."""
+    system = dyn.system
+    more, borne, none = ws.pose, dyn.pushed, ws.right[1]
+    begin_friction(system, ws, v)
+    weight = 1.0
+    for step in range(MOST_PASSES):
+        for c in range(force.shape[0]):
+            force[c] = 0.0
+        add_change(system, ws, force)
+        for r in range(none.shape[0]):
+            none[r] = 0.0
+        _respond(dyn, ws, force, none, more, borne)
+        for c in range(3, a.shape[0]):
+            a[c] += more[c]
+        for r in range(system.held):
+            lam[r] += borne[r]
+        find_normals(system, ws, lam, True)
+        weight = correct_normals(ws, step, weight)
+        if weight == 0.0:
+            return end_friction(system, ws, lam)
+    return math.nan
+
+
 @apart
 def accelerate(dyn, scratch, t, state, a, lam):
     """See formulation.py of the plane; returns the power of forces and drivers (W)."""
@@ -158,6 +201,8 @@ def accelerate(dyn, scratch, t, state, a, lam):
     _respond(dyn, ws, force, gamma, a, lam)
     for r in range(dyn.system.held, lam.shape[0]):
         lam[r] = dyn.pushed[r]
+    if dyn.system.rub.shape[0] > 0:
+        power += _rub(dyn, ws, v, force, a, lam)
     for n in range(dyn.system.driven.shape[0]):
         power -= lam[dyn.system.driven[n, 0]] * scratch.drive[dyn.system.driven[n, 1], 1]
     return power

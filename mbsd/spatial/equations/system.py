@@ -60,6 +60,10 @@ class System(NamedTuple):
     """(f, 2) row and law of each force; law 0: none."""
     push: Any
     """(f, 4) its stiffness, free value, damping and constant amount."""
+    rub: Any
+    """(r, 6) rows of forces that are friction; see friction.py."""
+    rub_number: Any
+    """(r, 8)"""
     call: Any
     """(c, 4) address of the function of each force that has one, its first frame, how many it has, first input."""
     frame_place: Any
@@ -117,6 +121,8 @@ class Workspace(NamedTuple):
     """(i,) of functions of forces; see calls.py."""
     outputs: Any
     """(c, o) what they gave last."""
+    rub: Any
+    """(5, r) of friction; see friction.py."""
 
 
 def workspace_for(system: System) -> Workspace:
@@ -144,6 +150,7 @@ def workspace_for(system: System) -> Workspace:
         delta=np.zeros((2, 6 * bodies - 3)),
         law=np.zeros(3),
         load=np.zeros(6 * bodies - 3),
+        rub=np.zeros((5, len(system.rub))),
         inputs=system.inputs.copy(),
         outputs=np.zeros((len(system.call), 6 * int(system.call[:, 2].max(initial=0)) + 1)),
     )

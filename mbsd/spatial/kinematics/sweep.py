@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.base.errors import AssemblyError, BranchError, SingularPoseError
+from mbsd.base.errors import AssemblyError, BranchError, ModelError, SimulationError, SingularPoseError
 from mbsd.base.quantity import written
 from mbsd.kinematics.march import REDUNDANT_GAP, RUNAWAY, driver_values
 from mbsd.kinematics.newton import BRANCH_DOUBT, DONE
@@ -40,6 +40,7 @@ def sweep(m: Model, duration: float | None, steps: int, times: Sequence[float] |
     taken = Steps(same_fields, grid)
     motion = _march(ready, taken)
     ready.packed.check_callbacks(accepted=False)
+    _refuse_friction(ready, motion)
     if ready.mobility.redundant_rows:
         lam = least_norm(ready.packed, ready.laws, motion)
         wrench = np.zeros((len(motion.times), len(m.joints), 6))
@@ -48,6 +49,24 @@ def sweep(m: Model, duration: float | None, steps: int, times: Sequence[float] |
     return Solution(
         m, ready.packed, motion, taken.wanted, ready.mobility, ready.laws, dict(m.starts), inserted_steps=taken.inserted
     )
+
+
+def _refuse_friction(ready: Prepared, motion: newton.DrivenMotion) -> None:
+    """Raise ModelError for friction of reactions that joints share, SimulationError where it jams."""
+    rubbing = [force.name for force in ready.packed.forces if force.kind.rubs is not None]
+    if not rubbing:
+        return
+    if ready.mobility.redundant_rows:
+        raise ModelError(
+            f"{ready.packed.name}: force '{rubbing[0]}' is friction, and joints repeat each other here, so nothing "
+            "says which of them carries. Replace a joint by a spherical or cylindrical one, or simulate"
+        )
+    jammed = np.flatnonzero(~np.isfinite(motion.lam).all(axis=1))
+    if len(jammed):
+        raise SimulationError(
+            f"{ready.packed.name}: at t = {motion.times[jammed[0]]:.6g} s reactions and friction do not agree: a joint "
+            f"jams. Take less friction, or a longer guide, in {', '.join(map(repr, rubbing))}"
+        )
 
 
 def _room(ready: Prepared, steps: Steps) -> newton.DrivenMotion:

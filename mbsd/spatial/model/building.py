@@ -8,6 +8,7 @@ from mbsd.spatial.model.forces.actuator import actuator
 from mbsd.spatial.model.forces.bushing import bushing
 from mbsd.spatial.model.forces.contact import contact, tyre
 from mbsd.spatial.model.forces.drag import drag
+from mbsd.spatial.model.forces.friction import friction
 from mbsd.spatial.model.forces.spring import spring
 from mbsd.spatial.model.forces.torque import torque
 from mbsd.spatial.model.forces.torsion_spring import torsion_spring
@@ -62,6 +63,7 @@ class Building(Model):
     torque = torque
     actuator = actuator
     drag = drag
+    friction = friction
     bushing = bushing
     contact = contact
     tyre = tyre

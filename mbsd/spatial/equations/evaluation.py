@@ -13,6 +13,7 @@ from mbsd.spatial.equations.distance import bend_distances, measure_distances
 from mbsd.spatial.equations.dot import bend_dots, measure_dots
 from mbsd.spatial.equations.forces import apply_forces
 from mbsd.spatial.equations.point import bend_points, measure_points
+from mbsd.spatial.equations.roll import bend_rolls, measure_rolls
 from mbsd.spatial.equations.turn import bend_turns, measure_turns
 from mbsd.spatial.equations.vectors import carry_vectors, turn_vectors
 
@@ -34,6 +35,8 @@ def evaluate_position(system, q, drive, ws):
         measure_distances(system, ws)
     if system.turn.shape[0] > 0:
         measure_turns(system, ws)
+    if system.roll.shape[0] > 0:
+        measure_rolls(system, ws)
 
 
 @inlined
@@ -60,6 +63,8 @@ def evaluate_gamma(system, v, drive, ws, out):
         bend_distances(system, ws, out)
     if system.turn.shape[0] > 0:
         bend_turns(system, ws, out)
+    if system.roll.shape[0] > 0:
+        bend_rolls(system, ws, out)
 
 
 @apart

@@ -43,6 +43,10 @@ class System(NamedTuple):
     """(., 5) row, place i, place j, columns."""
     turn: Any
     """(., 6) row, x and y axis of i, x axis of j, columns."""
+    roll: Any
+    """(., 11) row, axes x, y, z of i and of j, place i, place j, columns."""
+    roll_number: Any
+    """(., 2) radii of ring and tube (m)."""
     dot_weight: Any
     along_weight: Any
     distance_weight: Any
@@ -123,6 +127,8 @@ class Workspace(NamedTuple):
     """(c, o) what they gave last."""
     rub: Any
     """(5, r) of friction; see friction.py."""
+    roll: Any
+    """(8, 3) vectors of one roll; see roll.py."""
 
 
 def workspace_for(system: System) -> Workspace:
@@ -150,6 +156,7 @@ def workspace_for(system: System) -> Workspace:
         delta=np.zeros((2, 6 * bodies - 3)),
         law=np.zeros(3),
         load=np.zeros(6 * bodies - 3),
+        roll=np.zeros((8, 3)),
         rub=np.zeros((5, len(system.rub))),
         inputs=system.inputs.copy(),
         outputs=np.zeros((len(system.call), 6 * int(system.call[:, 2].max(initial=0)) + 1)),

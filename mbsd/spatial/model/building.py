@@ -29,6 +29,7 @@ from mbsd.spatial.model.joints.prismatic import prismatic
 from mbsd.spatial.model.joints.rack_and_pinion import rack_and_pinion
 from mbsd.spatial.model.joints.revolute import revolute
 from mbsd.spatial.model.joints.rod_with_fork import rod_with_fork
+from mbsd.spatial.model.joints.rolling import rolling
 from mbsd.spatial.model.joints.screw import screw
 from mbsd.spatial.model.joints.spherical import spherical
 from mbsd.spatial.model.joints.universal import universal
@@ -53,6 +54,7 @@ class Building(Model):
     parallel = parallel
     lock = lock
     screw = screw
+    rolling = rolling
     gear_pair = gear_pair
     rack_and_pinion = rack_and_pinion
     belt = belt

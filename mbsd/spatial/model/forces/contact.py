@@ -16,11 +16,10 @@ from mbsd.base.arguments import number_array, positive_number
 from mbsd.base.errors import ModelError
 from mbsd.spatial.equations.contact import contact as contact_law
 from mbsd.spatial.equations.contact import tyre as tyre_law
-from mbsd.spatial.model.body import Direction, Fixing, Marker, Place, place_given
-from mbsd.spatial.model.entries import add_force, axes_given, not_negative, own_marker, refuse_same
+from mbsd.spatial.model.body import Direction, Fixing, Place
+from mbsd.spatial.model.entries import add_force, not_negative, round_ends
 from mbsd.spatial.model.force import Call, Force, ForceKind, no_rows, register_force
-from mbsd.spatial.model.mechanism import Model, own_body
-from mbsd.spatial.model.rotation import frame
+from mbsd.spatial.model.mechanism import Model
 
 Heights = tuple[Any, Any, Any]
 """x (n,) and y (m,), equally spaced and rising, and heights (m, n), all in m."""
@@ -102,7 +101,7 @@ def contact(
     params |= {"exponent": exponent, "slip_speed": positive_number(f"{what}: slip_speed", slip_speed, "m/s")}
     if exponent < 1.0:
         raise ModelError(f"{what}: exponent is {exponent:g}; it must be 1 or more, 1.5 is that of Hertz")
-    i, j = _ends(m, what, surface, body, at, normal, centre, axis, ring > 0.0)
+    i, j = round_ends(m, what, surface, body, at, normal, centre, axis, ring > 0.0)
     return add_force(m, CONTACT, name, i, j, {**params, "heights": _heights(what, heights)})
 
 
@@ -130,30 +129,7 @@ def tyre(
         raise ModelError(f"{what}: rim is {rim:g} m; it must be less than the radius, {radius:g} m")
     params |= {"ring": radius - rim, "curvature": curvature, "heights": _heights(what, heights)}
     params |= {"standstill": positive_number(f"{what}: standstill", standstill, "m/s")}
-    return add_force(m, TYRE, name, *_ends(m, what, road, wheel, at, normal, centre, axis, True), params)
-
-
-def _ends(
-    m: Model, what: str, surface: Fixing, body: Fixing, at: Place | None, normal: Direction | None,
-    centre: Place | None, axis: Direction | None, is_disc: bool,
-) -> tuple[Marker, Marker]:  # fmt: skip
-    """Return markers of the surface and of the round body. Raises ModelError."""
-    if isinstance(surface, Marker):
-        i = own_marker(m, what, surface)
-    elif at is None or normal is None:
-        raise ModelError(f"{what} needs at= and normal= of its surface, a place and a direction of the world")
-    else:
-        axes = axes_given(what, normal)
-        i = own_body(m, surface, what).world_marker(np.array(at, float), np.eye(3) if axes is None else axes)
-    if isinstance(body, Marker):
-        j = own_marker(m, what, body)
-    elif centre is None or (is_disc and axis is None):
-        raise ModelError(f"{what} needs centre={', axis=' if is_disc else ''} of the round body in the world")
-    else:
-        middle = np.array(place_given(f"{what}: centre", centre))
-        j = own_body(m, body, what).world_marker(middle, np.eye(3) if axis is None else frame(np.array(axis, float)))
-    refuse_same(what, i, j)
-    return i, j
+    return add_force(m, TYRE, name, *round_ends(m, what, road, wheel, at, normal, centre, axis, True), params)
 
 
 def _heights(what: str, given: Heights | None) -> list[list[Any]] | None:

@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.base.arguments import checked_methods
+from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
 from mbsd.base.quantity import counted
 from mbsd.spatial.model.body import Body, Marker
 from mbsd.spatial.model.building import Building
@@ -23,6 +25,9 @@ from mbsd.spatial.model.mechanism import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     from mbsd.results.views import Mobility
+    from mbsd.spatial.analyses.equilibrium import Equilibrium
+    from mbsd.spatial.analyses.linearise import Linearisation
+    from mbsd.spatial.analyses.modes import Mode
     from mbsd.spatial.results.solution import Solution
 
 __all__ = ["STANDARD_GRAVITY", "Body", "Joint", "Marker", "Mechanism"]
@@ -73,6 +78,34 @@ class Mechanism(Building):
         from mbsd.spatial.dynamics.simulate import simulate
 
         return simulate(self, duration, steps, times, tolerance, event_rows)
+
+    def equilibrium(self, time: float = 0.0, nearest: bool = False) -> Equilibrium:
+        """Return the static equilibrium: pose, reactions, efforts of drivers, stiffness and stability.
+
+        Found from ``start_near``, downhill to a stable pose; ``nearest`` takes the nearest pose that balances, stable
+        or not. Drivers hold where they are at ``time`` (s), laws of forces have the value of then. Raises AssemblyError
+        where the joints do not close, SimulationError where nothing balances.
+        """
+        from mbsd.spatial.analyses.equilibrium import equilibrium
+
+        return equilibrium(self, time, nearest)
+
+    def linearise(self, at: Equilibrium | str = "equilibrium") -> Linearisation:
+        """Return A, eigenvalues and modes of small motions: x' = A x.
+
+        ``at``: "equilibrium" (the stable one, found from start_near), "start" (start_near and start_moving, which must
+        be a steady motion, such as a bicycle that goes straight on), or an equilibrium. Raises MobilityError if nothing
+        can move.
+        """
+        from mbsd.spatial.analyses.linearise import linearise
+
+        if at not in ("equilibrium", "start") and isinstance(at, str):
+            raise ModelError(f"{self.name}: {no_such('state to linearise at', at, ('equilibrium', 'start'))}")
+        return linearise(self, self.equilibrium() if at == "equilibrium" else at)
+
+    def modes(self) -> tuple[Mode, ...]:
+        """Return natural frequencies, damping and shapes about the stable equilibrium, by rising frequency."""
+        return self.linearise().modes
 
     def __repr__(self) -> str:
         bodies, joints, drivers = len(self.bodies) - 1, len(self.joints), len(self.drivers)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numba
 import numpy as np
@@ -12,12 +13,12 @@ from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
 from mbsd.base.errors import ModelError
-from mbsd.spatial import Mechanism, constant_rate, polynomial
+from mbsd.spatial import Body, Mechanism, constant_rate, polynomial
 
 G = 9.81
 
 
-def two_bodies() -> tuple[Mechanism, object, object]:
+def two_bodies() -> tuple[Mechanism, Body, Body]:
     """Return two free bodies that tumble without weight."""
     m = Mechanism("pair", gravity=None)
     first = m.body("first", 1.0, com=(0.1, 0, 0), inertia=(0.3, 0.4, 0.5), orientation=(0.9, 0.1, -0.2, 0.3))
@@ -45,7 +46,7 @@ def test_a_bushing_pushes_by_place_and_rotation_vector() -> None:
     assert np.allclose(view.energy, 0.5 * np.einsum("ti,ij,tj->t", x, stiffness, x), rtol=0, atol=1e-10)
     assert np.ptp(sol.energy.total) < 1e-8 * sol.energy.total[0]
     places = [sol.place(body.marker(body.com)) for body in (first, second)]
-    momentum = sum(b.mass * p.velocity for b, p in zip((first, second), places, strict=True))
+    momentum = np.sum([b.mass * p.velocity for b, p in zip((first, second), places, strict=True)], axis=0)
     assert np.allclose(momentum, momentum[0], rtol=0, atol=1e-10)
     spin = np.zeros_like(momentum)
     for body, place in zip((first, second), places, strict=True):
@@ -67,7 +68,7 @@ def test_damping_of_a_bushing_takes_what_energy_is_lost() -> None:
     assert np.allclose(np.gradient(sol.energy.kinetic, sol.t)[2:-2], power[2:-2], rtol=0, atol=1e-3)
 
 
-def drop(height: float, **more: object) -> Mechanism:
+def drop(height: float, **more: Any) -> Mechanism:
     """Return a ball of .1 m and 1 kg that falls from ``height`` onto a plane through the origin, normal (1, 2, 2)."""
     normal = np.array([1.0, 2.0, 2.0]) / 3.0
     m = Mechanism("drop", gravity=-G * normal)

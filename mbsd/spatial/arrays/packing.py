@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -11,6 +11,7 @@ import numpy as np
 from mbsd.base.arguments import law_of
 from mbsd.compiling.callback import Callback
 from mbsd.model.laws import Motion
+from mbsd.spatial.arrays.calls import calls_of
 from mbsd.spatial.arrays.tables import Tables
 from mbsd.spatial.equations.evaluation import measure
 from mbsd.spatial.equations.system import System, Workspace, workspace_for
@@ -184,7 +185,7 @@ def pack(m: Model, extra: Sequence[tuple[Joint, Row]] = ()) -> Packed:
     wrench += [(-1, 0)] * len(pushes)
     arms = [tables.place(joint.j) for joint in joints[:passive]]
     callbacks: list[Callback] = []
-    calls = _calls_of(m.name, forces, tables, callbacks)
+    calls = calls_of(m.name, forces, tables, callbacks)
     system = System(
         mass=np.array([body.mass for body in bodies]),
         inertia=np.array([body.principal[0] for body in bodies]),
@@ -227,45 +228,6 @@ def _frictions_of(
         "rub": np.array(table, np.int64).reshape(-1, 6),
         "rub_number": np.array(numbers, float).reshape(-1, 8),
     }
-
-
-def _calls_of(name: str, forces: Sequence[Force], tables: Tables, callbacks: list[Callback]) -> dict[str, np.ndarray]:
-    """Return the fields of a System for forces by functions; those of the user are put into ``callbacks``."""
-    table, places, turns, inputs = [], list[int](), list[np.ndarray](), list[float]()
-    for force in forces:
-        call = force.call
-        if call is None:
-            continue
-        frames = len(call.frames)
-        function = call.function
-        if not hasattr(function, "address") or call.is_users:  # laws are plain Python where nothing is compiled
-            parts = (7 * frames, 6 * frames) if call.is_users else (13 * frames + len(call.numbers),)
-            callbacks.append(
-                Callback(function if call.is_users else filling(function, 6 * frames + 1), parts,
-                         6 * frames + (not call.is_users), f"{name}: force '{force.name}'")
-            )  # fmt: skip
-            function = callbacks[-1]
-        table.append((function.address, len(places), frames, len(inputs)))
-        places += [tables.place(marker) for marker in call.frames]
-        turns += [euler_parameters(marker.body.principal[1].T @ marker.axes) for marker in call.frames]
-        inputs += [*[0.0] * (13 * frames), *call.numbers]
-    return {
-        "call": np.array(table, np.int64).reshape(-1, 4),
-        "frame_place": np.array(places, np.int64),
-        "frame_turn": np.array(turns).reshape(-1, 4),
-        "inputs": np.array(inputs, float),
-    }
-
-
-def filling(function: Callable[..., None], count: int) -> Callable[[float, np.ndarray], np.ndarray]:
-    """Return a function that returns what a law would fill in."""
-
-    def returned(t: float, inputs: np.ndarray) -> np.ndarray:
-        out = np.zeros(count)
-        function(t, inputs, out)
-        return out
-
-    return returned
 
 
 def _laws_of(forces: Sequence[Force], first: int, drivers: int) -> list[tuple[int, int]]:

@@ -54,11 +54,11 @@ def simulate(
     same_fields: Any = m
     grid = output_times(same_fields, duration, steps, times)
     refuse_bad_steps(same_fields, grid, tolerance, None)
-    return _Run(m, grid, tolerance, event_rows).followed()
+    return Run(m, grid, tolerance, event_rows).followed()
 
 
 @dataclass
-class _Run:
+class Run:
     """A simulation over output times (T,) (s)."""
 
     m: Model
@@ -82,6 +82,7 @@ class _Run:
             warn(f"{packed.name}: the start was made consistent: {words}", InitialConditionWarning)
         self.laws = compiled_laws(same_fields, start, end)
         self.changes = begun.changes
+        self.v = begun.v
         self.y = np.zeros((2, len(self.q)))
         self.y[0] = self.q
         self.y[1, : len(begun.v)] = _to_bodies(packed, self.q, begun.v)
@@ -117,7 +118,8 @@ class _Run:
             counted=self.counted,
         )  # fmt: skip
 
-    def _scratch(self) -> Scratch:
+    def scratch(self) -> Scratch:
+        """Return scratch for a run."""
         packed, entries = self.packed, len(self.q)
         factors: Any = ()
         return Scratch(
@@ -126,6 +128,14 @@ class _Run:
             state=np.zeros((2, entries)), stages=np.zeros((DOP853.stages, 2, entries)), power=np.zeros(DOP853.stages),
             dense=np.zeros((8, 2, entries)), dense_work=np.zeros(7), full=full_matrices(0, 0), report=np.zeros(4),
         )  # fmt: skip
+
+    def dynamics(self) -> SpaceDynamics:
+        """Return the arrays of the formulation, for which rows in use stay."""
+        return self._dynamics(0.0)
+
+    def begin(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return pose (3 + 7 n,) and velocities (3 + 6 n,) at the start, w in the world."""
+        return self.q, self.v
 
     def _settings(self) -> Settings:
         packed = self.packed
@@ -143,7 +153,7 @@ class _Run:
         limit = OWN if self.mobility.redundant_rows else 0.0
         state = start_state(self.y, len(packed.ws.phi), float(self.grid[0]))
         out = output_for(self.grid, len(self.q), len(packed.ws.phi))
-        scratch, settings, dyn = self._scratch(), self._settings(), self._dynamics(limit)
+        scratch, settings, dyn = self.scratch(), self._settings(), self._dynamics(limit)
         watched, none = list(self.m.events.values()), np.zeros(0)
         span = end - float(self.grid[0])
         events = (

@@ -43,10 +43,9 @@ class Call:
     """A function of frames, and its numbers."""
 
     function: Any
-    """A law of mbsd (equations/calls.py), or a function of the user."""
+    """The name of a law of mbsd (arrays/calls.py), or a function of the user."""
     frames: tuple[Marker, ...]
     numbers: Sequence[float] = ()
-    is_users: bool = False
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,6 @@ import numpy as np
 
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
-from mbsd.spatial.equations.bushing import bushing as law
 from mbsd.spatial.model.body import Direction, Fixing, Place
 from mbsd.spatial.model.entries import add_force, axes_given, force_markers
 from mbsd.spatial.model.force import Call, Force, ForceKind, no_rows, register_force
@@ -21,7 +20,7 @@ BUSHING = register_force(
     ForceKind(
         "bushing",
         no_rows,
-        call=lambda f: Call(law, (f.i, f.j), [*np.ravel(f.params["stiffness"]), *np.ravel(f.params["damping"])]),
+        call=lambda f: Call("bushing", (f.i, f.j), [*np.ravel(f.params["stiffness"]), *np.ravel(f.params["damping"])]),
         example=lambda m, i, j: m.bushing(
             "example", i, j, at=(0.1, 0.2, 0.3), axis=(1, 2, -1), stiffness=(30, 40, 50, 3, 4, 5), damping=[0.1] * 6
         ),

@@ -14,8 +14,6 @@ import numpy as np
 
 from mbsd.base.arguments import number_array, positive_number
 from mbsd.base.errors import ModelError
-from mbsd.spatial.equations.contact import contact as contact_law
-from mbsd.spatial.equations.contact import tyre as tyre_law
 from mbsd.spatial.model.body import Direction, Fixing, Place
 from mbsd.spatial.model.entries import add_force, not_negative, round_ends
 from mbsd.spatial.model.force import Call, Force, ForceKind, no_rows, register_force
@@ -40,7 +38,7 @@ CONTACT = register_force(
     ForceKind(
         "contact",
         no_rows,
-        call=lambda f: Call(contact_law, (f.i, f.j), _numbers(f)),
+        call=lambda f: Call("contact", (f.i, f.j), _numbers(f)),
         example=lambda m, i, j: m.contact(
             "example",
             i,
@@ -62,7 +60,7 @@ TYRE = register_force(
     ForceKind(
         "tyre",
         no_rows,
-        call=lambda f: Call(tyre_law, (f.i, f.j), _numbers(f)),
+        call=lambda f: Call("tyre", (f.i, f.j), _numbers(f)),
         example=lambda m, i, j: m.tyre(
             "example",
             i,

@@ -28,7 +28,7 @@ USER_FORCE = register_force(
     ForceKind(
         "user_force",
         no_rows,
-        call=lambda f: Call(f.params["function"], f.params["frames"], is_users=True),
+        call=lambda f: Call(f.params["function"], f.params["frames"]),
         example=lambda m, i, j: m.user_force("example", _wind_and_spring, j),
     )
 )

@@ -39,8 +39,9 @@ def rolling(
     a round rim. It must touch the plane in the design pose; of a marker place and z axis are taken.
     """
     what = f"{m.name}: joint '{name}'"
-    params = {"ring": not_negative_number(f"{what}: ring", ring, "m")}
-    params["radius"] = not_negative_number(f"{what}: radius", radius, "m")
+    for word, number in (("ring", ring), ("radius", radius)):
+        not_negative_number(f"{what}: {word}", number, "m")
     if not ring + radius > 0.0:
         raise ModelError(f"{what} needs radius= of a ball or ring= of a disc (m), above zero")
-    return enter(m, ROLLING, name, *round_ends(m, what, plane, wheel, at, normal, centre, axis, ring > 0.0), **params)
+    i, j = round_ends(m, what, plane, wheel, at, normal, centre, axis, ring > 0.0)
+    return enter(m, ROLLING, name, i, j, ring=ring, radius=radius)

@@ -19,9 +19,9 @@ LAWS: dict[str, Any] = {"bushing": bushing, "contact": contact, "tyre": tyre}
 """Laws of mbsd by the names that forces give them."""
 
 
-def calls_of(name: str, forces: Sequence[Force], tables: Tables, callbacks: list[Callback]) -> dict[str, np.ndarray]:
-    """Return the fields of a System for forces by functions; those of the user are put into ``callbacks``."""
-    table, places, turns, inputs = [], list[int](), list[np.ndarray](), list[float]()
+def addresses_of(name: str, forces: Sequence[Force]) -> tuple[list[int], list[Callback]]:
+    """Return the address of the function of each force that has one, and what keeps those of the user there."""
+    addresses, callbacks = [], []
     for force in forces:
         call = force.call
         if call is None:
@@ -30,15 +30,22 @@ def calls_of(name: str, forces: Sequence[Force], tables: Tables, callbacks: list
         function = call.function if is_users else LAWS[call.function]
         if is_users or not COMPILED:
             parts = (7 * frames, 6 * frames) if is_users else (13 * frames + len(call.numbers),)
-            callbacks.append(
-                Callback(function if is_users else filling(function, 6 * frames + 1), parts,
-                         6 * frames + (not is_users), f"{name}: force '{force.name}'")
-            )  # fmt: skip
-            function = callbacks[-1]
-        table.append((function.address, len(places), frames, len(inputs)))
+            own = function if is_users else filling(function, 6 * frames + 1)
+            function = Callback(own, parts, 6 * frames + (not is_users), f"{name}: force '{force.name}'")
+            callbacks.append(function)
+        addresses.append(function.address)
+    return addresses, callbacks
+
+
+def calls_of(addresses: Sequence[int], forces: Sequence[Force], tables: Tables) -> dict[str, np.ndarray]:
+    """Return the fields of a System for forces by functions at these addresses."""
+    table, places, turns, inputs = [], list[int](), list[np.ndarray](), list[float]()
+    calls = [call for force in forces if (call := force.call) is not None]
+    for address, call in zip(addresses, calls, strict=True):
+        table.append((address, len(places), len(call.frames), len(inputs)))
         places += [tables.place(marker) for marker in call.frames]
         turns += [euler_parameters(marker.body.principal[1].T @ marker.axes) for marker in call.frames]
-        inputs += [*[0.0] * (13 * frames), *call.numbers]
+        inputs += [*[0.0] * (13 * len(call.frames)), *call.numbers]
     return {
         "call": np.array(table, np.int64).reshape(-1, 4),
         "frame_place": np.array(places, np.int64),

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from mbsd.base.arguments import law_of
 from mbsd.compiling.callback import Callback
 from mbsd.model.laws import Motion
-from mbsd.spatial.arrays.calls import calls_of
+from mbsd.spatial.arrays.calls import addresses_of, calls_of
 from mbsd.spatial.arrays.tables import Tables
 from mbsd.spatial.equations.evaluation import measure
 from mbsd.spatial.equations.system import System, Workspace, workspace_for
@@ -50,6 +51,16 @@ class Packed:
     """Functions of the user in forces."""
     watched: Mapping[str, int] = field(default_factory=dict)
     """Numbers of the turns that are counted for events, by the names of joints."""
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return all but functions at addresses, which are those of this process."""
+        return {key: value for key, value in vars(self).items() if key != "callbacks"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Restore arrays and names, and give functions addresses anew."""
+        vars(self).update(state)
+        addresses, self.callbacks = addresses_of(self.name, self.forces)
+        self.system.call[:, 0] = addresses
 
     @property
     def body_names(self) -> list[str]:
@@ -184,8 +195,8 @@ def pack(m: Model, extra: Sequence[tuple[Joint, Row]] = ()) -> Packed:
     values += [0.0] * len(pushes)
     wrench += [(-1, 0)] * len(pushes)
     arms = [tables.place(joint.j) for joint in joints[:passive]]
-    callbacks: list[Callback] = []
-    calls = calls_of(m.name, forces, tables, callbacks)
+    addresses, callbacks = addresses_of(m.name, forces)
+    calls = calls_of(addresses, forces, tables)
     system = System(
         mass=np.array([body.mass for body in bodies]),
         inertia=np.array([body.principal[0] for body in bodies]),

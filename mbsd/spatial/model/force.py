@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 
 from mbsd.base.arguments import adding
 from mbsd.base.names import Suggesting
-from mbsd.base.pickled import ByName
+from mbsd.base.pickled import ByName, WithFunctions
 from mbsd.model.laws import Motion
 from mbsd.spatial.model.body import Body, Marker
 from mbsd.spatial.model.joint import Joint
@@ -88,7 +88,7 @@ def register_force(kind: ForceKind) -> ForceKind:
 
 
 @dataclass(frozen=True, eq=False)
-class Force(Suggesting):
+class Force(Suggesting, WithFunctions):
     """A force between marker i (first body) and marker j (second body)."""
 
     kind: ForceKind

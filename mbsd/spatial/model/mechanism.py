@@ -53,6 +53,11 @@ class Model(Suggesting):
     velocities: dict[str, tuple[float, ...]] = field(default_factory=dict)
     """Rates of joints (rad/s or m/s) and angular velocities of bodies (rad/s, in the world) at the start, by name."""
 
+    calls: list[Any] = field(default_factory=list, repr=False)
+    """Calls of the methods that built it (journal.py), by which it is changed and saved."""
+    building: bool = field(default=False, repr=False)
+    """True while one of these methods is at work."""
+
     other_words = MappingProxyType(
         {"hinge": "revolute", "pin": "revolute", "slider": "prismatic", "ball_joint": "spherical", "weld": "fixed"}
         | {"hooke": "universal", "cardan": "universal", "bar": "rod", "gear": "gear_pair", "rack": "rack_and_pinion"}

@@ -74,17 +74,20 @@ class Mechanism(Building):
         times: Sequence[float] | np.ndarray | None = None,
         tolerance: float = 1e-7,
         event_rows: bool = False,
+        formulation: str = "auto",
     ) -> Solution:
         """Simulate the motion under gravity from ``start_near`` and ``start_moving``, drivers imposed.
 
         ``steps`` equal output steps over ``duration`` seconds, both ends included; ``times`` (s), rising, replaces
         both. ``tolerance`` is relative to the mechanism's size, to 1 rad, and to speeds. ``event_rows`` adds two rows
-        at every event, right before and after it; a terminal event is the last row. Raises MobilityError for a body
-        without mass or inertia, SimulationError where the integration cannot go on.
+        at every event, right before and after it; a terminal event is the last row. ``formulation``: "tree"
+        integrates the turns and slides of a spanning tree of joints and keeps the others as rows, "reference" all
+        coordinates, which events and friction need; by default the one that is usually quicker. Raises MobilityError
+        for a body without mass or inertia, SimulationError where the integration cannot go on.
         """
         from mbsd.spatial.dynamics.simulate import simulate
 
-        return simulate(self, duration, steps, times, tolerance, event_rows)
+        return simulate(self, duration, steps, times, tolerance, event_rows, formulation)
 
     def simulate_many(
         self,

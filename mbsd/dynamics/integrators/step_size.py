@@ -14,6 +14,9 @@ from mbsd.dynamics.state import EVALUATIONS, TIME
 WITHIN = 1e-3
 """The first step, as part of one that leads to where forces are not finite."""
 
+SHORTEST = 1e-9
+"""Part of the longest step that the first trial has at least: coordinates near zero tell nothing of a length."""
+
 
 @inlined
 def allowed(settings, before, after, part, c):
@@ -39,7 +42,7 @@ def first_step(dyn, scratch, state, settings, exponent):
     speed = math.sqrt(speed / count)
     h = 1e-4 * settings.longest
     if size > 1e-5 and speed > 1e-5:
-        h = min(0.01 * size / speed, settings.longest)
+        h = min(max(0.01 * size / speed, SHORTEST * settings.longest), settings.longest)
     for part in range(2):
         for c in range(3, n3):
             trial[part, c] = y[part, c] + h * state.dy[part, c]

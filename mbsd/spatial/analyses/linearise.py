@@ -93,8 +93,8 @@ class _Accelerations:
 def linearise(m: Model, at: Equilibrium | str) -> Linearisation:
     """Return the linearisation; see :meth:`mbsd.spatial.mechanism.Mechanism.linearise`."""
     time = at.time if isinstance(at, Equilibrium) else 0.0
-    run = Run(m, np.array([time, time + 1.0]), 1e-9)
-    q, v = (at.solution.q[0], np.zeros(run.packed.freedoms + 3)) if isinstance(at, Equilibrium) else run.begin()
+    run = Run(m, np.array([time, time + 1.0]), 1e-9, "reference")
+    q, v = (at.solution.q[0], np.zeros(run.packed.freedoms + 3)) if isinstance(at, Equilibrium) else run.start()
     run.packed.measured(q)
     near = _Accelerations(run, q, v)
     n = run.packed.freedoms

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -166,21 +166,27 @@ def moved(q: np.ndarray, delta: np.ndarray) -> np.ndarray:
     return out
 
 
-def pack(m: Model, extra: Sequence[tuple[Joint, Row]] = ()) -> Packed:
-    """Return the arrays of a mechanism; rows ``extra`` of joints come last and belong to no reaction."""
+def pack(
+    m: Model, extra: Sequence[tuple[Joint, Row]] = (), rows_of: Callable[[Joint], list[Row]] = lambda joint: joint.rows
+) -> Packed:
+    """Return the arrays of a mechanism; rows ``extra`` of joints come last and belong to no reaction.
+
+    ``rows_of`` a joint may be fewer than its own, and without some of their terms.
+    """
     bodies = list(m.bodies.values())
     joints = [*m.joints.values(), *m.drivers.values()]
     tables = Tables(bodies)
     row_joint, units, values, driven, wrench = [], [], [], [], []
     driver_rows, passive = 0, len(m.joints)
-    rows = [(k, row, False) for k, joint in enumerate(joints) for row in joint.rows]
+    rows = [(k, row, False) for k, joint in enumerate(joints) for row in rows_of(joint)]
     rows += [(joints.index(joint), row, True) for joint, row in extra]
     for k, row, added in rows:
         first, reacts = len(row_joint), k < passive and not added
         if joints[k].motion is not None:
             driven.append((first, k - passive + 1))
         sides = tables.add(row, first)
-        column = 6 * sides.index(bodies.index(joints[k].j.body))
+        second = bodies.index(joints[k].j.body)
+        column = 6 * sides.index(second) if second in sides else 0
         row_joint += [k] * row.count
         units += [row.unit] * row.count
         values += [row.value] * row.count

@@ -70,7 +70,6 @@ def envelope_of(row_body: np.ndarray, kept: np.ndarray) -> tuple[Envelope, Facto
 def factor(env, fac, jac, inverse):
     """Factor S of J (m, 6 k) in body axes; returns the least part of a row that is its own."""
     low = fac.low
-    pivot = fac.pivot
     for r in range(env.rows.shape[0]):
         for c in range(env.first[r], r + 1):
             low[r, c] = 0.0
@@ -86,6 +85,14 @@ def factor(env, fac, jac, inverse):
         for k in range(6):
             total += jac[row, i + k] * inverse[d + k] * jac[other, j + k]
         low[r, c] += total
+    return decompose(env, fac)
+
+
+@internal
+def decompose(env, fac):
+    """Factor S, which stands in fac.low; returns the least part of a row that is its own."""
+    low = fac.low
+    pivot = fac.pivot
     margin = 1.0
     for r in range(env.rows.shape[0]):
         begin = env.first[r]

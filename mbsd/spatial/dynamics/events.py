@@ -38,21 +38,15 @@ class Events:
     """Events of a run as arrays, and what happened."""
 
     def __init__(
-        self,
-        packed: Packed,
-        events: list[Event],
-        state: State,
-        longest: float,
-        span: float,
-        counted: np.ndarray,
-        rows: bool,
+        self, packed: Packed, events: list[Event], state: State, longest: float, end: float, dyn: Any, rows: bool
     ) -> None:
         """``rows``: keep outputs right before and after each event."""
-        self.packed, self.events, self.counted = packed, events, counted
+        self.packed, self.events, self.counted = packed, events, dyn.counted
         self.callbacks: list[Callback] = []
         self.happenings: list[Happening] = []
         self.rows: list[tuple[Any, ...]] = []
         """Time, state, derivative, multipliers, work and counted turns of each output beside events."""
+        span = end - float(state.clock[TIME])
         self.contacts = _without_contacts(state, self._arrays(len(state.y[0]), longest, span))
         self.contacts.clock[arrays.PAUSES] = arrays.BEFORE_AND_AFTER if rows else arrays.AFTER
 

@@ -12,7 +12,7 @@ import math
 
 from mbsd.compiling.callback import SIGNATURE, call
 from mbsd.compiling.jit import at_address, inlined, kernel, lazy
-from mbsd.spatial.equations.vectors import carry_vectors
+from mbsd.spatial.equations.vectors import carry_vectors, rotate_bodies
 
 law = at_address(SIGNATURE)
 """Decorates a law: f(t, inputs, outputs)."""
@@ -80,6 +80,7 @@ def apply_calls(system, t, q, v, ws, load):
 def tabulate_calls(system, times, q, v, ws, out):
     """Fill out (T, calls, outputs) with what all functions give along a motion, v in the world."""
     for k in range(times.shape[0]):
+        rotate_bodies(system, q[k], ws)
         carry_vectors(system, q[k], ws)
         apply_calls(system, times[k], q[k], v[k], ws, ws.load)
         for n in range(out.shape[1]):

@@ -7,7 +7,7 @@ Of a row with a law f(t):
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import apart, inlined, kernel
+from mbsd.compiling.jit import apart, inlined, internal, kernel
 from mbsd.spatial.equations.along import bend_alongs, measure_alongs
 from mbsd.spatial.equations.distance import bend_distances, measure_distances
 from mbsd.spatial.equations.dot import bend_dots, measure_dots
@@ -15,12 +15,19 @@ from mbsd.spatial.equations.forces import apply_forces
 from mbsd.spatial.equations.point import bend_points, measure_points
 from mbsd.spatial.equations.roll import bend_rolls, measure_rolls
 from mbsd.spatial.equations.turn import bend_turns, measure_turns
-from mbsd.spatial.equations.vectors import carry_vectors, turn_vectors
+from mbsd.spatial.equations.vectors import carry_vectors, rotate_bodies, turn_vectors
 
 
 @apart
 def evaluate_position(system, q, drive, ws):
     """Fill ws.phi (m,) and ws.jac (m, 6 k) at coordinates q (3 + 7 n,) and laws drive (drivers + 1, 3)."""
+    rotate_bodies(system, q, ws)
+    evaluate_rows(system, q, drive, ws)
+
+
+@internal
+def evaluate_rows(system, q, drive, ws):
+    """Fill ws.phi and ws.jac as evaluate_position does, where rotations are known."""
     carry_vectors(system, q, ws)
     for r in range(ws.phi.shape[0]):
         ws.phi[r] = -system.value[r]

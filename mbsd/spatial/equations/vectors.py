@@ -19,26 +19,32 @@ def dot(a, b):
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
+@inlined
+def fill_rotation(w, x, y, z, m):
+    """Fill the rotation m (3, 3) of Euler parameters of any length."""
+    n = 1.0 / (w * w + x * x + y * y + z * z)
+    m[0, 0] = (w * w + x * x - y * y - z * z) * n
+    m[0, 1] = 2.0 * (x * y - w * z) * n
+    m[0, 2] = 2.0 * (x * z + w * y) * n
+    m[1, 0] = 2.0 * (x * y + w * z) * n
+    m[1, 1] = (w * w - x * x + y * y - z * z) * n
+    m[1, 2] = 2.0 * (y * z - w * x) * n
+    m[2, 0] = 2.0 * (x * z - w * y) * n
+    m[2, 1] = 2.0 * (y * z + w * x) * n
+    m[2, 2] = (w * w - x * x - y * y + z * z) * n
+
+
 @internal
-def carry_vectors(system, q, ws):
-    """Fill rotations, arms, places and axes at coordinates q (3 + 7 n,); e need not be a unit."""
+def rotate_bodies(system, q, ws):
+    """Fill rotations at coordinates q (3 + 7 n,); e need not be a unit."""
     for b in range(1, system.mass.shape[0]):
         c = 7 * b - 1
-        w = q[c]
-        x = q[c + 1]
-        y = q[c + 2]
-        z = q[c + 3]
-        n = 1.0 / (w * w + x * x + y * y + z * z)
-        m = ws.rotation[b]
-        m[0, 0] = (w * w + x * x - y * y - z * z) * n
-        m[0, 1] = 2.0 * (x * y - w * z) * n
-        m[0, 2] = 2.0 * (x * z + w * y) * n
-        m[1, 0] = 2.0 * (x * y + w * z) * n
-        m[1, 1] = (w * w - x * x + y * y - z * z) * n
-        m[1, 2] = 2.0 * (y * z - w * x) * n
-        m[2, 0] = 2.0 * (x * z - w * y) * n
-        m[2, 1] = 2.0 * (y * z + w * x) * n
-        m[2, 2] = (w * w - x * x - y * y + z * z) * n
+        fill_rotation(q[c], q[c + 1], q[c + 2], q[c + 3], ws.rotation[b])
+
+
+@internal
+def carry_vectors(system, q, ws):
+    """Fill arms, places and axes at coordinates q (3 + 7 n,), whose rotations are known."""
     for p in range(system.arm_body.shape[0]):
         b = system.arm_body[p]
         m = ws.rotation[b]

@@ -11,19 +11,17 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.base.errors import AssemblyError, BranchError, ModelError, SimulationError, SingularPoseError
+from mbsd.base.errors import AssemblyError, BranchError, SimulationError, SingularPoseError
 from mbsd.base.quantity import written
 from mbsd.kinematics.march import REDUNDANT_GAP, RUNAWAY, driver_values
 from mbsd.kinematics.newton import BRANCH_DOUBT, DONE
 from mbsd.kinematics.steps import Steps
 from mbsd.kinematics.sweep import sweep_times
 from mbsd.spatial.arrays.packing import Packed
-from mbsd.spatial.equations.evaluation import wrenches_along
 from mbsd.spatial.kinematics import newton
 from mbsd.spatial.kinematics.close import gap_in_words
 from mbsd.spatial.kinematics.mobility import better_rows_at
 from mbsd.spatial.kinematics.prepared import Prepared, planned, prepare
-from mbsd.spatial.kinematics.sharing import least_norm
 from mbsd.spatial.model.mechanism import Model
 from mbsd.spatial.results.solution import Solution
 
@@ -40,28 +38,16 @@ def sweep(m: Model, duration: float | None, steps: int, times: Sequence[float] |
     taken = Steps(same_fields, grid)
     motion = _march(ready, taken)
     ready.packed.check_callbacks(accepted=False)
-    _refuse_friction(ready, motion)
-    if ready.mobility.redundant_rows:
-        lam = least_norm(ready.packed, ready.laws, motion)
-        wrench = np.zeros((len(motion.times), len(m.joints), 6))
-        wrenches_along(ready.packed.system, motion.drives, motion.q, ready.packed.ws, lam, wrench)
-        motion = motion._replace(lam=lam, wrench=wrench)
+    _refuse_jammed(ready, motion)
     return Solution(
         m, ready.packed, motion, taken.wanted, ready.mobility, ready.laws, dict(m.starts), inserted_steps=taken.inserted
     )
 
 
-def _refuse_friction(ready: Prepared, motion: newton.DrivenMotion) -> None:
-    """Raise ModelError for friction of reactions that joints share, SimulationError where it jams."""
+def _refuse_jammed(ready: Prepared, motion: newton.DrivenMotion) -> None:
+    """Raise SimulationError where reactions and the friction that they cause do not agree."""
     rubbing = [force.name for force in ready.packed.forces if force.kind.rubs is not None]
-    if not rubbing:
-        return
-    if ready.mobility.redundant_rows:
-        raise ModelError(
-            f"{ready.packed.name}: force '{rubbing[0]}' is friction, and joints repeat each other here, so nothing "
-            "says which of them carries. Replace a joint by a spherical or cylindrical one, or simulate"
-        )
-    jammed = np.flatnonzero(~np.isfinite(motion.lam).all(axis=1))
+    jammed = np.flatnonzero(~np.isfinite(motion.lam).all(axis=1)) if rubbing else []
     if len(jammed):
         raise SimulationError(
             f"{ready.packed.name}: at t = {motion.times[jammed[0]]:.6g} s reactions and friction do not agree: a joint "

@@ -52,7 +52,7 @@ class Row:
     @property
     def count(self) -> int:
         """Rows of J."""
-        return 3 if self.terms[0].kind in ("point", "roll") else 1
+        return 3 if self.terms and self.terms[0].kind in ("point", "roll") else 1
 
 
 def point(i: Marker, j: Marker) -> Row:

@@ -89,10 +89,20 @@ def wrench_view(packed: Packed, force: int, motion: Any, wanted: np.ndarray) -> 
 
 
 def force_view(packed: Packed, force: int, motion: Any, wanted: np.ndarray) -> ForceView:
-    """Return the view of a force of rows, by its number, at the ``wanted`` steps of a motion."""
-    counts = [len(known.pushes) for known in packed.forces]
-    first = sum(counts[:force])
-    rows = slice(first, first + counts[force])
+    """Return the view of a force, by its number, at the ``wanted`` steps of a motion with multipliers."""
+    values, rates = force_values(packed, force, motion, wanted)
+    rows = packed.system.held + _rows_of(packed, force)
+    return ForceView(values, rates, -motion.lam[wanted][:, rows])
+
+
+def force_values(packed: Packed, force: int, motion: Any, wanted: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return what a force measures (T, rows), and its rates."""
     values, rates = force_rows(packed, *(part[wanted] for part in (motion.drives, motion.q, motion.v, motion.turn)))
-    held = packed.system.held
-    return ForceView(values[:, rows], rates[:, rows], -motion.lam[wanted][:, held:][:, rows])
+    rows = _rows_of(packed, force)
+    return values[:, rows], rates[:, rows]
+
+
+def _rows_of(packed: Packed, force: int) -> np.ndarray:
+    """Return the numbers of a force's rows among those of all forces."""
+    counts = [len(known.pushes) for known in packed.forces]
+    return np.arange(counts[force]) + sum(counts[:force])

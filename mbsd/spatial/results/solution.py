@@ -27,7 +27,7 @@ from mbsd.model.event import Happening
 from mbsd.results.views import DriverView, EnergyView, Mobility, Stats
 from mbsd.spatial.model.body import Marker
 from mbsd.spatial.model.joint import Joint
-from mbsd.spatial.results.forces import ForceView, WrenchView, force_view, wrench_view
+from mbsd.spatial.results.forces import ForceView, WrenchView, force_values, force_view, wrench_view
 from mbsd.spatial.results.frames import (
     BodyMotion,
     body_motion,
@@ -36,6 +36,7 @@ from mbsd.spatial.results.frames import (
     slides_between,
     turns_between,
 )
+from mbsd.spatial.results.reactions import with_reactions
 from mbsd.spatial.results.residuals import residuals
 from mbsd.spatial.results.views import FrameView, JointView
 
@@ -72,6 +73,8 @@ class Solution(Suggesting):
     """Changes of the given start that made a simulation consistent."""
     events: tuple[Happening, ...] = ()
     """What happened in a simulation, in order."""
+    formulation: str = ""
+    """Coordinates of a simulation: "reference" or "tree"."""
 
     @cached_property
     def t(self) -> np.ndarray:
@@ -96,7 +99,12 @@ class Solution(Suggesting):
     @cached_property
     def lam(self) -> np.ndarray:
         """(T, m) multipliers."""
-        return self.motion.lam[self.wanted]
+        return self._whole.lam[self.wanted]
+
+    @cached_property
+    def _whole(self) -> Any:
+        """The motion with multipliers and wrenches, which are found when they are first asked for."""
+        return with_reactions(self.packed, self.laws, self.motion, self.mobility.redundant_rows)
 
     def body(self, name: str) -> FrameView:
         """Return the motion of a body's frame."""
@@ -118,7 +126,7 @@ class Solution(Suggesting):
         """Return place, reaction, turn and slide of a joint."""
         joints = self.packed.passive_joints
         k = self._index(name, [joint.name for joint in joints], "joint")
-        joint, wrench = joints[k], self.motion.wrench[self.wanted, k]
+        joint, wrench = joints[k], self._whole.wrench[self.wanted, k]
         i, j = (marker_frame(marker, self._steps_of(marker)) for marker in (joint.i, joint.j))
         return JointView(
             name=name,
@@ -146,7 +154,7 @@ class Solution(Suggesting):
         k = self._index(name, [force.name for force in self.packed.forces], "force")
         if self.packed.forces[k].call is not None:
             return wrench_view(self.packed, k, self.motion, self.wanted)
-        return force_view(self.packed, k, self.motion, self.wanted)
+        return force_view(self.packed, k, self._whole, self.wanted)
 
     @cached_property
     def energy(self) -> EnergyView:
@@ -163,7 +171,7 @@ class Solution(Suggesting):
             if force.call is not None:
                 potential = potential + wrench_view(self.packed, k, self.motion, self.wanted).energy
                 continue
-            values = force_view(self.packed, k, self.motion, self.wanted).values
+            values, _ = force_values(self.packed, k, self.motion, self.wanted)
             for push, x in zip(force.pushes, values.T, strict=True):
                 potential = potential + 0.5 * push.stiffness * (x - push.free) ** 2
         return EnergyView(kinetic, potential)
@@ -172,7 +180,7 @@ class Solution(Suggesting):
     def stats(self) -> Stats:
         """How well the motion fulfils its equations: largest residuals over all steps and rows."""
         steps = self.steps or len(self.motion.times)
-        return Stats(*residuals(self.packed, self.laws, self.motion), steps, self.inserted_steps)
+        return Stats(*residuals(self.packed, self.laws, self._whole), steps, self.inserted_steps)
 
     def _begin(self, joint: Joint) -> float:
         """Return the turn (rad) near which a joint starts, as a driver or start_near has it."""

@@ -1,0 +1,59 @@
+"""Reactions along a motion: multipliers of all joints, of least norm where joints repeat each other, and wrenches.
+
+    J^T lam = Q - M a
+    J^T = Q R   =>   lam = R^-1 Q^T (Q - M a)         rows are independent
+    J = Q R     =>   lam = Q R^-T (Q - M a)           rows fix all bodies, and some repeat others
+    J = U s V^T =>   lam = U s^-1 V^T (Q - M a)       else, the largest s that count
+
+Rows of J are dimensionless: a force counts as its moment at one size of the mechanism, whatever the unit of length.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from mbsd.equations.laws import Laws
+from mbsd.spatial.arrays.along import loads_along, tabulated
+from mbsd.spatial.arrays.packing import Packed
+from mbsd.spatial.equations.evaluation import wrenches_along
+
+JACOBIAN_NUMBERS = 2_000_000
+"""Numbers of Jacobians held at once."""
+
+
+def with_reactions(packed: Packed, laws: Laws, motion: Any, redundant: int) -> Any:
+    """Return a DrivenMotion with multipliers and wrenches; ``redundant`` rows of joints repeat others."""
+    if len(motion.lam) == len(motion.q):
+        return motion
+    motion = motion._replace(lam=_multipliers(packed, laws, motion, redundant))
+    wrench = np.zeros((len(motion.q), len(packed.passive_joints), 6))
+    wrenches_along(packed.system, motion.drives, np.ascontiguousarray(motion.q), packed.ws, motion.lam, wrench)
+    return motion._replace(wrench=wrench)
+
+
+def _multipliers(packed: Packed, laws: Laws, motion: Any, redundant: int) -> np.ndarray:
+    drives, q, v, turns = motion.drives, motion.q, motion.v, motion.turn
+    count, rows = len(q), len(packed.row_joint)
+    loads, lam = loads_along(packed, laws, motion)
+    each = max(1, JACOBIAN_NUMBERS // max(1, rows * packed.freedoms))
+    for first in range(0, count, each):
+        part = slice(first, first + each)
+        _, jac, _ = tabulated(packed, drives[part], q[part], v[part], turns[part])
+        jac = jac * packed.row_scale[:, None]
+        lam[part, :rows] = _least_norm(jac, loads[part, 3:, None], rows - redundant)[..., 0] * packed.row_scale
+    return lam
+
+
+def _least_norm(jac: np.ndarray, load: np.ndarray, rank: int) -> np.ndarray:
+    """Return x (T, m, 1) of least norm with J^T x = load, J (T, m, n)."""
+    rows, columns = jac.shape[1:]
+    if rank == rows:
+        orthogonal, upper = np.linalg.qr(np.swapaxes(jac, 1, 2))
+        return np.linalg.solve(upper, np.swapaxes(orthogonal, 1, 2) @ load)
+    if rank == columns:
+        orthogonal, upper = np.linalg.qr(jac)
+        return orthogonal @ np.linalg.solve(np.swapaxes(upper, 1, 2), load)
+    left, size, right = np.linalg.svd(jac, full_matrices=False)
+    return left[..., :rank] @ ((right[:, :rank] @ load) / size[:, :rank, None])

@@ -37,21 +37,21 @@ def simulate_many(
         said = ", ".join(f"{what} {count}" for what, count in counts.items())
         raise ModelError(f"{m.name}: numbers of values differ: {said}; give as many of each, or one for all")
     count = next(iter(counts.values()), 1)
-    reasons, found = list[str | None](), list[dict[str, np.ndarray] | None]()
+    reasons, rows = list[str | None](), list[dict[str, np.ndarray] | None]()
     own = copy.deepcopy(m)
     for k in range(count):
         try:
             with quiet():
-                found.append(_one(own, measure, vary, start, moving, named, k))
+                rows.append(_one(own, measure, vary, start, moving, named, k))
             reasons.append(None)
         except MechanismError as error:
             if isinstance(error, ModelError) and k == 0:
                 raise
-            found.append(None)
+            rows.append(None)
             reasons.append(str(error))
-    shapes = {key: value.shape for row in found if row is not None for key, value in row.items()}
+    shapes = {key: value.shape for row in rows if row is not None for key, value in row.items()}
     columns = {
-        key: np.array([np.full(shape, np.nan) if row is None else row[key] for row in found])
+        key: np.array([np.full(shape, np.nan) if row is None else row[key] for row in rows])
         for key, shape in shapes.items()
     }
     return Simulations(columns, reasons, [WHY] * count, None)
@@ -63,8 +63,8 @@ def _one(
 ) -> dict[str, np.ndarray]:  # fmt: skip
     def value(values: Values) -> Any:
         array = np.asarray(values, float)
-        one = array[k] if array.ndim else array
-        return one.tolist()
+        entry = array[k] if array.ndim else array
+        return entry.tolist()
 
     for name, changes in vary.items():
         own.change(name, **{key: value(values) for key, values in changes.items()})

@@ -27,7 +27,7 @@ from mbsd.spatial.model.mechanism import Model
 M = TypeVar("M", bound=Model)
 KIND, VERSION = "mbsd mechanism in space", 1
 UNIT = 1e-9
-"""What may be missing of length 1 or of a right angle."""
+"""Error that a length of 1 or a right angle may have."""
 
 
 def save(m: Model, path: str | os.PathLike[str]) -> None:

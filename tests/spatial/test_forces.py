@@ -136,7 +136,7 @@ def test_a_block_slides_down_with_the_friction_of_its_guide() -> None:
         m = Mechanism("incline", gravity=(0, 0, -9.81))
         block = m.body("block", 2.0, com=tuple(lever * down), inertia=(0.1, 0.1, 0.1))
         m.prismatic("guide", m.ground, block, at=(0, 0, 0), axis=down)
-        m.friction("rubs", "guide", mu, length=length)
+        m.friction("brakes", "guide", mu, length=length)
         m.start_moving({"guide": 0.5})
         sol = m.simulate(duration=0.5, steps=10, tolerance=1e-11)
         weight = 2.0 * 9.81 * math.cos(tilt)
@@ -144,7 +144,7 @@ def test_a_block_slides_down_with_the_friction_of_its_guide() -> None:
         wanted = 9.81 * math.sin(tilt) - mu * pressed / 2.0
         assert np.allclose(sol.joint("guide").slide_acceleration[:2], wanted, rtol=0, atol=1e-9)
         assert np.allclose(sol.joint("guide").force @ normal, weight, rtol=0, atol=1e-9)
-        assert np.allclose(sol.force("rubs").effort[:2], -mu * pressed, rtol=0, atol=1e-9)
+        assert np.allclose(sol.force("brakes").effort[:2], -mu * pressed, rtol=0, atol=1e-9)
 
 
 def test_a_pendulum_loses_its_swing_to_the_friction_of_its_pin() -> None:
@@ -155,7 +155,7 @@ def test_a_pendulum_loses_its_swing_to_the_friction_of_its_pin() -> None:
     m = Mechanism("pendulum", gravity=(0, 0, -9.81))
     rod = m.body("rod", mass, com=(c, 0, 0), inertia=(0.1, inertia, 0.1))
     m.revolute("pin", m.ground, rod, at=(0, 0, 0), axis=(0, -1, 0))
-    m.friction("rubs", "pin", mu, radius=radius, static=0.5, stribeck=0.1, viscous=0.02, slip_speed=slip)
+    m.friction("brakes", "pin", mu, radius=radius, static=0.5, stribeck=0.1, viscous=0.02, slip_speed=slip)
     sol = m.simulate(duration=3.0, steps=30, tolerance=1e-10)
     whole = inertia + mass * c * c
 
@@ -180,20 +180,20 @@ def test_a_pendulum_loses_its_swing_to_the_friction_of_its_pin() -> None:
 
 def test_a_sweep_has_the_friction_of_a_simulation() -> None:
     m = machines.slider_crank()
-    m.friction("rail rubs", "rail", 0.2, length=0.05)
-    m.friction("pin rubs", "bearing", 0.1, radius=0.01, slip_speed=0.01)
+    m.friction("rail friction", "rail", 0.2, length=0.05)
+    m.friction("pin friction", "bearing", 0.1, radius=0.01, slip_speed=0.01)
     swept = m.sweep(duration=0.3, steps=6)
     simulated = m.simulate(duration=0.3, steps=6, tolerance=1e-11)
     assert np.allclose(swept.driver("motor").torque, simulated.driver("motor").torque, rtol=0, atol=1e-7)
-    assert np.allclose(swept.force("rail rubs").effort, simulated.force("rail rubs").effort, rtol=0, atol=1e-7)
+    assert np.allclose(swept.force("rail friction").effort, simulated.force("rail friction").effort, rtol=0, atol=1e-7)
     rail = swept.joint("rail")
     moment = 2 * np.linalg.norm(rail.moment, axis=1) / 0.05
     pressed = np.maximum(rail.magnitude, moment)
-    assert np.allclose(np.abs(swept.force("rail rubs").effort[1:]), 0.2 * pressed[1:], rtol=0, atol=1e-9)
+    assert np.allclose(np.abs(swept.force("rail friction").effort[1:]), 0.2 * pressed[1:], rtol=0, atol=1e-9)
     assert swept.stats.power_residual < 1e-9
     loop = machines.bennett()
-    loop.friction("rubs", "hinge 0", 0.1, radius=0.01)
-    with pytest.raises(ModelError, match="'rubs' is friction, and joints repeat each other"):
+    loop.friction("brakes", "hinge 0", 0.1, radius=0.01)
+    with pytest.raises(ModelError, match="'brakes' is friction, and joints repeat each other"):
         loop.sweep()
     with pytest.raises(ModelError, match="'cross' is universal; friction needs"):
         m.friction("other", "cross", 0.1)

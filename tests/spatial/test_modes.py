@@ -81,9 +81,9 @@ def test_a_bifilar_bar_hangs_level_and_swings_with_its_periods() -> None:
     bar = m.body("bar", 2.0, inertia=(1e-3, 2.0 * size**2 / 12, 2.0 * size**2 / 12))
     for k, x in enumerate((-half, half)):
         m.distance(f"string {k}", m.ground, bar, start=(x, 0, length), end=(x, 0, 0))
-    found = m.equilibrium()
-    assert np.allclose(found.joint("string 0").magnitude, G, rtol=0, atol=1e-9)
-    assert found.body("bar").z[0] == pytest.approx(0.0, abs=1e-10)
+    rest = m.equilibrium()
+    assert np.allclose(rest.joint("string 0").magnitude, G, rtol=0, atol=1e-9)
+    assert rest.body("bar").z[0] == pytest.approx(0.0, abs=1e-10)
     omegas = sorted(mode.omega for mode in m.modes())
     wanted = sorted([math.sqrt(G / length), math.sqrt(G / length), math.sqrt(12 * G * half**2 / (length * size**2))])
     close = [min(abs(omega - want) for omega in omegas) for want in wanted]
@@ -132,12 +132,12 @@ def test_a_chain_hangs_down_from_any_start() -> None:
         m.universal(f"joint {k}", before, rod, at=place, first=(0, 0, 1), second=np.cross(end - place, (0, 0, 1)))
         before, place = rod, end
     m.trace("tip", before, at=place)
-    found = m.equilibrium()
-    tip = found.solution.point("tip").place[0]
-    assert found.stiffness[0] == pytest.approx(0.0, abs=1e-9)  # all turns about the vertical without resistance
-    assert found.stiffness[1] > 1.0
+    rest = m.equilibrium()
+    tip = rest.solution.point("tip").place[0]
+    assert rest.stiffness[0] == pytest.approx(0.0, abs=1e-9)  # all turns about the vertical without resistance
+    assert rest.stiffness[1] > 1.0
     assert tip[2] == pytest.approx(-3 * 0.5 * math.sqrt(1.04), abs=1e-9)
-    assert found.joint("joint 0").force[0] == pytest.approx([0, 0, 3 * G], abs=1e-9)
+    assert rest.joint("joint 0").force[0] == pytest.approx([0, 0, 3 * G], abs=1e-9)
 
 
 def test_a_pendulum_stands_on_its_head_where_that_is_nearest() -> None:
@@ -165,22 +165,22 @@ def test_drivers_and_springs_balance() -> None:
     m.drive_turn("hand", "hinge", polynomial(math.radians(30), 5.0))
     m.spring("rope", lever, cart, start=(1, 0, 0), end=(3, 0, 0), stiffness=100.0, length=1.0)
     m.spring("wall", cart, m.ground, start=(3, 0, 0), end=(5, 0, 0), stiffness=50.0, length=1.0)
-    found = m.equilibrium()
-    x = found.body("cart").x[0] + 3.0
+    rest = m.equilibrium()
+    x = rest.body("cart").x[0] + 3.0
     way = np.array([x - math.cos(math.radians(30)), -0.5])
     pull = 100.0 * (np.linalg.norm(way) - 1.0) * way / np.linalg.norm(way)
     assert pull[0] == pytest.approx(50.0 * (5.0 - x - 1.0), abs=1e-8)
     torque = math.cos(math.radians(30)) * pull[1] - 0.5 * pull[0]
-    assert found.driver("hand").torque[0] == pytest.approx(-torque, abs=1e-8)
+    assert rest.driver("hand").torque[0] == pytest.approx(-torque, abs=1e-8)
 
 
 def test_redundant_loops_balance_too() -> None:
     m = machines.bricard()
     m.gravity = (0.0, -G, 0.0)
-    found = m.equilibrium()
-    assert found.stable
+    rest = m.equilibrium()
+    assert rest.stable
     weight = sum(body.mass for body in m.bodies.values()) * G
-    total = found.joint("hinge 0").force[0] - found.joint("hinge 5").force[0]
+    total = rest.joint("hinge 0").force[0] - rest.joint("hinge 5").force[0]
     assert total == pytest.approx([0.0, weight, 0.0], abs=1e-7)
 
 

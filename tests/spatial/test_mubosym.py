@@ -52,8 +52,8 @@ def test_three_skew_rods() -> None:
     }
     sol = m.simulate(duration=10.0, steps=2000, tolerance=1e-12)
     for second, wanted in exact.items():
-        found = [1.0 + sol.joint(f"q{k}").turn[200 * second] for k in (1, 2, 3)]
-        assert found == pytest.approx(wanted, abs=1e-7 if second == 10 else 1e-8)
+        reached = [1.0 + sol.joint(f"q{k}").turn[200 * second] for k in (1, 2, 3)]
+        assert reached == pytest.approx(wanted, abs=1e-7 if second == 10 else 1e-8)
 
 
 def test_a_pendulum_under_a_turning_mount() -> None:
@@ -68,8 +68,8 @@ def test_a_pendulum_under_a_turning_mount() -> None:
     m.drag("air 1", mount, 0.5)
     m.drag("air 2", bob, 0.5)
     sol = m.simulate(times=[0.0, 30.0], tolerance=1e-11)
-    found = sol.joint("hinge").turn[-1], sol.joint("hinge").turn_rate[-1]
-    assert found == pytest.approx((1.4453089814742373, 0.0285468150738544), abs=1e-8)
+    reached = sol.joint("hinge").turn[-1], sol.joint("hinge").turn_rate[-1]
+    assert reached == pytest.approx((1.4453089814742373, 0.0285468150738544), abs=1e-8)
 
 
 def test_rods_with_torsion_springs() -> None:
@@ -101,11 +101,11 @@ def test_rods_with_torsion_springs() -> None:
     sol = m.simulate(times=[0.0, 30.0], tolerance=1e-10)
     exact = (3.192776601205436, -7.400147336733554e-05, 0.36051603645291763,
              -8.209002975249025e-06, 0.0004951839236792833, 1.6213192674492343)  # fmt: skip
-    found = [q + sol.joint(name).turn[-1] for name in ("q1", "q2", "q4")]
-    found += [sol.joint(name).turn_rate[-1] for name in ("q1", "q2", "q4")]
-    turns = np.round((np.array(found[:3]) - exact[:3]) / (2 * math.pi))
-    assert np.array(found[:3]) - 2 * math.pi * turns == pytest.approx(exact[:3], abs=1e-7)
-    assert found[3:] == pytest.approx(exact[3:], abs=1e-7)
+    reached = [q + sol.joint(name).turn[-1] for name in ("q1", "q2", "q4")]
+    reached += [sol.joint(name).turn_rate[-1] for name in ("q1", "q2", "q4")]
+    turns = np.round((np.array(reached[:3]) - exact[:3]) / (2 * math.pi))
+    assert np.array(reached[:3]) - 2 * math.pi * turns == pytest.approx(exact[:3], abs=1e-7)
+    assert reached[3:] == pytest.approx(exact[3:], abs=1e-7)
 
 
 def test_a_gyroscope_on_an_arm() -> None:

@@ -71,7 +71,7 @@ class _Accelerations:
         self.dyn, self.scratch, self.time = run.dynamics(), run.scratch(), float(run.grid[0])
         self.scale = self.packed.column_scale
 
-    def at(self, way: np.ndarray, change: np.ndarray) -> np.ndarray:
+    def evaluate(self, way: np.ndarray, change: np.ndarray) -> np.ndarray:
         """Return accelerations (6 n,) in sizes and rad, in the world, at deviations of pose and velocity (6 n,)."""
         q = moved(self.q, way * self.scale)
         speed = (self.v[3:] + change * self.scale).reshape(-1, 6)
@@ -99,8 +99,8 @@ def linearise(m: Model, at: Equilibrium | str) -> Linearisation:
     near = _Accelerations(run, q, v)
     n = run.packed.freedoms
     rest = np.zeros(n)
-    stiff = differences(lambda way: near.at(way, rest), n)
-    damped = differences(lambda change: near.at(rest, change), n)
+    stiff = differences(lambda way: near.evaluate(way, rest), n)
+    damped = differences(lambda change: near.evaluate(rest, change), n)
     jac = run.packed.scaled(q)
     rolling = run.packed.system.roll[:, :1] + [1, 2]
     places = np.setdiff1d(np.arange(len(jac)), rolling)

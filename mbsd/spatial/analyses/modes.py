@@ -56,7 +56,7 @@ def modes_of(linear: Linear) -> tuple[Mode, ...]:
     """Return all modes by rising frequency: free rigid motions, then one for each pair or real eigenvalue."""
     free, half = 2 * linear.rigid, len(linear.deviations) // 2
     values, vectors = np.linalg.eig(linear.a[free:, free:])
-    found = [(0.0 + 0.0j, linear.deviations[:half, k]) for k in range(linear.rigid)]
+    pairs = [(0.0 + 0.0j, linear.deviations[:half, k]) for k in range(linear.rigid)]
     for value, vector in zip(values, vectors.T, strict=True):
         if value.imag < -REAL * abs(value):
             continue
@@ -66,9 +66,9 @@ def modes_of(linear: Linear) -> tuple[Mode, ...]:
         if linear.rigid and value != 0.0:
             drift = linear.a[linear.rigid : free, free:] @ vector
             whole[: linear.rigid] = drift / value**2
-        found.append((complex(value), linear.deviations[:half] @ whole))
-    found.sort(key=lambda mode: abs(mode[0]))
-    return tuple(Mode(value, _shape(linear, way), {}) for value, way in found)
+        pairs.append((complex(value), linear.deviations[:half] @ whole))
+    pairs.sort(key=lambda mode: abs(mode[0]))
+    return tuple(Mode(value, _shape(linear, way), {}) for value, way in pairs)
 
 
 def _shape(linear: Linear, way: np.ndarray) -> dict[str, np.ndarray]:

@@ -51,9 +51,9 @@ def loads_along(packed: Packed, laws: Laws, motion: Any) -> tuple[np.ndarray, np
     series = (motion.times, motion.drives, motion.q, motion.v, motion.a, motion.turn)
     whole = (np.ascontiguousarray(part) for part in series)
     tabulate_loads(packed.system, laws, *whole, packed.ws, load, lam)
-    rubbing = packed.system.rub[:, ROW]
-    if len(rubbing):
-        lam[:, rubbing] = motion.lam[:, rubbing]
+    frictions = packed.system.friction[:, ROW]
+    if len(frictions):
+        lam[:, frictions] = motion.lam[:, frictions]
         _, jac, _ = _all_rows(packed, motion.drives, motion.q, motion.v, motion.turn)
-        load[:, 3:] -= np.einsum("trc,tr->tc", jac[:, rubbing], lam[:, rubbing])
+        load[:, 3:] -= np.einsum("trc,tr->tc", jac[:, frictions], lam[:, frictions])
     return load, lam

@@ -234,16 +234,16 @@ def _frictions_of(
     """Return the fields of a System for friction of joints."""
     table, numbers, row = [], [], held
     for force in forces:
-        if force.kind.rubs is not None and force.joint is not None:
+        if force.kind.friction_of is not None and force.joint is not None:
             joint = joints.index(force.joint)
             own = [r for r, k in enumerate(row_joint) if k == joint]
             second = bodies.index(force.joint.j.body)
             table.append((row, own[0], own[-1] + 1, wrench[own[0]][1], second, arms[joint]))
-            numbers.append(force.kind.rubs(force))
+            numbers.append(force.kind.friction_of(force))
         row += len(force.pushes)
     return {
-        "rub": np.array(table, np.int64).reshape(-1, 6),
-        "rub_number": np.array(numbers, float).reshape(-1, 8),
+        "friction": np.array(table, np.int64).reshape(-1, 6),
+        "friction_number": np.array(numbers, float).reshape(-1, 8),
     }
 
 

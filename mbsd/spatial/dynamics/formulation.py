@@ -95,8 +95,8 @@ def _to_body_axes(dyn, ws):
     env = dyn.envelope
     for e in range(env.arm.shape[0]):
         _turn_arm(ws, ws.jac[env.rows[env.arm[e, 0]]], env.arm[e, 1] + 3, env.arm[e, 2])
-    for n in range(dyn.system.rub.shape[0]):
-        r = dyn.system.rub[n, ROW]
+    for n in range(dyn.system.friction.shape[0]):
+        r = dyn.system.friction[n, ROW]
         for side in range(dyn.system.row_body.shape[1]):
             if dyn.system.row_body[r, side] > 0:
                 _turn_arm(ws, ws.jac[r], 6 * side + 3, dyn.system.row_body[r, side])
@@ -143,7 +143,7 @@ def _respond(dyn, ws, force, gamma, a, lam):
 
 
 @lazy(float)
-def _rub(dyn, ws, v, force, a, lam):
+def _add_friction(dyn, ws, v, force, a, lam):
     """Add friction of joints to a and lam (m,), found together with the reactions; returns its power (W)."""
     system = dyn.system
     more, borne, none = ws.pose, dyn.pushed, ws.right[1]
@@ -201,8 +201,8 @@ def accelerate(dyn, scratch, t, state, a, lam):
     _respond(dyn, ws, force, gamma, a, lam)
     for r in range(dyn.system.held, lam.shape[0]):
         lam[r] = dyn.pushed[r]
-    if dyn.system.rub.shape[0] > 0:
-        power += _rub(dyn, ws, v, force, a, lam)
+    if dyn.system.friction.shape[0] > 0:
+        power += _add_friction(dyn, ws, v, force, a, lam)
     for n in range(dyn.system.driven.shape[0]):
         power -= lam[dyn.system.driven[n, 0]] * scratch.drive[dyn.system.driven[n, 1], 1]
     return power

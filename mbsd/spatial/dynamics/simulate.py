@@ -189,7 +189,7 @@ class Run:
         parts = [(out.t, t), (out.y, y), (out.a, a), (out.lam, lam), (out.work, work), (out.margin, np.ones(len(t)))]
         order = np.argsort(np.concatenate([out.t[:written], t]), kind="stable")
         self.turns = np.concatenate([self.turns[:written], turns])[order]
-        whole = Output(*(np.concatenate([one[:written], other])[order] for one, other in parts))
+        whole = Output(*(np.concatenate([series[:written], added])[order] for series, added in parts))
         self.grid = whole.t
         return whole
 
@@ -226,7 +226,7 @@ def _why_reference(m: Model) -> str:
     """Return what only reference coordinates know of a mechanism; empty: nothing."""
     if m.events:
         return "events"
-    return "friction of joints" if any(force.kind.rubs is not None for force in m.forces.values()) else ""
+    return "friction of joints" if any(force.kind.friction_of is not None for force in m.forces.values()) else ""
 
 
 def _refuse_superfluous_drivers(packed: Packed, independent: list[int], mobility: Mobility) -> None:

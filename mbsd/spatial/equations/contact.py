@@ -29,7 +29,7 @@ from mbsd.spatial.equations.calls import NUMBERS, law, push_pair, to_frame, to_w
 RING, TUBE, STIFFNESS, EXPONENT, DAMPING, FRICTION, SLIP_SPEED = range(NUMBERS, NUMBERS + 7)
 GRIP, SLOPE, SIDE_SLOPE, SHAPE, CURVATURE, STANDSTILL = range(NUMBERS + 7, NUMBERS + 13)
 COLUMNS, ROWS, FIRST_X, FIRST_Y, STEP_X, STEP_Y, HEIGHTS = range(NUMBERS + 13, NUMBERS + 20)
-"""Of a height field; 0 columns: a plane."""
+"""Numbers of a height field; 0 columns: a plane."""
 LOOKS = 30
 FLAT = 1e-12
 

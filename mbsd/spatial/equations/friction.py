@@ -19,11 +19,11 @@ from mbsd.kinematics.elimination import solve_transposed
 from mbsd.spatial.equations.forces import along_row, push_row
 
 ROW, FIRST, END, COLUMN, BODY, PLACE = range(6)
-"""Columns of System.rub: the row that pushes, rows of its joint, column and number of its second body, the place."""
+"""Columns of System.friction: the row that pushes, rows of its joint, column and number of its second body, a place."""
 COEFFICIENT, STATIC, STRIBECK, VISCOUS, SLIP_SPEED, PRELOAD, LEVER, LENGTH = range(8)
-"""Columns of System.rub_number."""
+"""Columns of System.friction_number."""
 USED, LAST, FOUND, PUSH, RATE = range(5)
-"""Rows of Workspace.rub: normal forces used now, their last error, those that multipliers give, friction, rates."""
+"""Rows of Workspace.friction: normal forces used now, their last error, those of the multipliers, friction, rates."""
 MOST_PASSES = 100
 SETTLED = 1e-12
 """Part of the largest normal force that may be left."""
@@ -32,10 +32,10 @@ SETTLED = 1e-12
 @internal
 def find_normals(system, ws, lam, turned):
     """Fill the normal forces that multipliers lam (m,) give; ``turned``: torques of J are in body axes."""
-    for n in range(system.rub.shape[0]):
-        c = system.rub[n, COLUMN]
+    for n in range(system.friction.shape[0]):
+        c = system.friction[n, COLUMN]
         f0 = f1 = f2 = t0 = t1 = t2 = 0.0
-        for r in range(system.rub[n, FIRST], system.rub[n, END]):
+        for r in range(system.friction[n, FIRST], system.friction[n, END]):
             row = ws.jac[r]
             f0 -= lam[r] * row[c]
             f1 -= lam[r] * row[c + 1]
@@ -44,19 +44,19 @@ def find_normals(system, ws, lam, turned):
             t1 -= lam[r] * row[c + 4]
             t2 -= lam[r] * row[c + 5]
         if turned:
-            m = ws.rotation[system.rub[n, BODY]]
+            m = ws.rotation[system.friction[n, BODY]]
             x, y, z = t0, t1, t2
             t0 = m[0, 0] * x + m[0, 1] * y + m[0, 2] * z
             t1 = m[1, 0] * x + m[1, 1] * y + m[1, 2] * z
             t2 = m[2, 0] * x + m[2, 1] * y + m[2, 2] * z
-        s = ws.arm[system.rub[n, PLACE]]
+        s = ws.arm[system.friction[n, PLACE]]
         t0 -= s[1] * f2 - s[2] * f1
         t1 -= s[2] * f0 - s[0] * f2
         t2 -= s[0] * f1 - s[1] * f0
         normal = math.sqrt(f0 * f0 + f1 * f1 + f2 * f2)
-        if system.rub_number[n, LENGTH] > 0.0:
-            normal = max(normal, 2.0 * math.sqrt(t0 * t0 + t1 * t1 + t2 * t2) / system.rub_number[n, LENGTH])
-        ws.rub[FOUND, n] = normal
+        if system.friction_number[n, LENGTH] > 0.0:
+            normal = max(normal, 2.0 * math.sqrt(t0 * t0 + t1 * t1 + t2 * t2) / system.friction_number[n, LENGTH])
+        ws.friction[FOUND, n] = normal
 
 
 @internal
@@ -72,41 +72,41 @@ def _friction(number, normal, rate):
 @internal
 def add_change(system, ws, load):
     """Add to load what friction under the normal forces used now is more than it was."""
-    for n in range(system.rub.shape[0]):
-        push = _friction(system.rub_number[n], ws.rub[USED, n], ws.rub[RATE, n])
-        push_row(system, ws, system.rub[n, ROW], push - ws.rub[PUSH, n], load)
-        ws.rub[PUSH, n] = push
+    for n in range(system.friction.shape[0]):
+        push = _friction(system.friction_number[n], ws.friction[USED, n], ws.friction[RATE, n])
+        push_row(system, ws, system.friction[n, ROW], push - ws.friction[PUSH, n], load)
+        ws.friction[PUSH, n] = push
 
 
 @internal
 def begin_friction(system, ws, v):
     """Fill the rates of joints with friction at velocities v (3 + 6 n,), in the axes of J, while none acts yet."""
-    for n in range(system.rub.shape[0]):
-        ws.rub[RATE, n] = along_row(system, ws, system.rub[n, ROW], v)
-        ws.rub[PUSH, n] = 0.0
-        if not ws.rub[USED, n] < 1e100:
-            ws.rub[USED, n] = 0.0
+    for n in range(system.friction.shape[0]):
+        ws.friction[RATE, n] = along_row(system, ws, system.friction[n, ROW], v)
+        ws.friction[PUSH, n] = 0.0
+        if not ws.friction[USED, n] < 1e100:
+            ws.friction[USED, n] = 0.0
 
 
 @internal
 def correct_normals(ws, step, weight):
     """Correct the normal forces used; returns the next weight, 0 where they agree or are no numbers."""
     largest = worst = product = square = 0.0
-    for n in range(ws.rub.shape[1]):
-        gap = ws.rub[FOUND, n] - ws.rub[USED, n]
+    for n in range(ws.friction.shape[1]):
+        gap = ws.friction[FOUND, n] - ws.friction[USED, n]
         if not math.isfinite(gap):
             return 0.0
-        largest = max(largest, ws.rub[FOUND, n])
+        largest = max(largest, ws.friction[FOUND, n])
         worst = max(worst, abs(gap))
-        product += ws.rub[LAST, n] * (gap - ws.rub[LAST, n])
-        square += (gap - ws.rub[LAST, n]) ** 2
+        product += ws.friction[LAST, n] * (gap - ws.friction[LAST, n])
+        square += (gap - ws.friction[LAST, n]) ** 2
     if worst <= SETTLED * largest:
         return 0.0
     if step > 0 and square > 0.0:
         weight *= -product / square
-    for n in range(ws.rub.shape[1]):
-        ws.rub[LAST, n] = ws.rub[FOUND, n] - ws.rub[USED, n]
-        ws.rub[USED, n] += weight * ws.rub[LAST, n]
+    for n in range(ws.friction.shape[1]):
+        ws.friction[LAST, n] = ws.friction[FOUND, n] - ws.friction[USED, n]
+        ws.friction[USED, n] += weight * ws.friction[LAST, n]
     return weight
 
 
@@ -114,14 +114,14 @@ def correct_normals(ws, step, weight):
 def end_friction(system, ws, lam):
     """Put friction into the multipliers of its rows; returns its power (W)."""
     power = 0.0
-    for n in range(system.rub.shape[0]):
-        lam[system.rub[n, ROW]] = -ws.rub[PUSH, n]
-        power += ws.rub[PUSH, n] * ws.rub[RATE, n]
+    for n in range(system.friction.shape[0]):
+        lam[system.friction[n, ROW]] = -ws.friction[PUSH, n]
+        power += ws.friction[PUSH, n] * ws.friction[RATE, n]
     return power
 
 
 @lazy(float)
-def rub_swept(system, seq, fac, ws, v, load, lam):
+def add_swept_friction(system, seq, fac, ws, v, load, lam):
     """Add friction to load and lam (m,) of a driven motion, whose multipliers are lam; returns its power (W)."""
     begin_friction(system, ws, v)
     weight = 1.0

@@ -64,9 +64,9 @@ class System(NamedTuple):
     """(f, 2) row and law of each force; law 0: none."""
     push: Any
     """(f, 4) its stiffness, free value, damping and constant amount."""
-    rub: Any
+    friction: Any
     """(r, 6) rows of forces that are friction; see friction.py."""
-    rub_number: Any
+    friction_number: Any
     """(r, 8)"""
     call: Any
     """(c, 4) address of the function of each force that has one, its first frame, how many it has, first input."""
@@ -125,7 +125,7 @@ class Workspace(NamedTuple):
     """(i,) of functions of forces; see calls.py."""
     outputs: Any
     """(c, o) what they gave last."""
-    rub: Any
+    friction: Any
     """(5, r) of friction; see friction.py."""
     roll: Any
     """(8, 3) vectors of one roll; see roll.py."""
@@ -157,7 +157,7 @@ def workspace_for(system: System) -> Workspace:
         law=np.zeros(3),
         load=np.zeros(6 * bodies - 3),
         roll=np.zeros((8, 3)),
-        rub=np.zeros((5, len(system.rub))),
+        friction=np.zeros((5, len(system.friction))),
         inputs=system.inputs.copy(),
         outputs=np.zeros((len(system.call), 6 * int(system.call[:, 2].max(initial=0)) + 1)),
     )

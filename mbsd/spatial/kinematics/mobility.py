@@ -48,10 +48,10 @@ def joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:
 
 def refuse_shared_friction(packed: Packed, joints: Mobility) -> None:
     """Raise ModelError for friction of reactions that joints share."""
-    rubbing = [force.name for force in packed.forces if force.kind.rubs is not None]
-    if rubbing and joints.redundant_rows:
+    frictions = [force.name for force in packed.forces if force.kind.friction_of is not None]
+    if frictions and joints.redundant_rows:
         raise ModelError(
-            f"{packed.name}: force '{rubbing[0]}' is friction, and joints repeat each other here "
+            f"{packed.name}: force '{frictions[0]}' is friction, and joints repeat each other here "
             f"({', '.join(map(repr, joints.redundant))}), so nothing says which of them carries. Replace a joint by a "
             "spherical or cylindrical one"
         )

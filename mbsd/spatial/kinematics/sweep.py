@@ -46,12 +46,12 @@ def sweep(m: Model, duration: float | None, steps: int, times: Sequence[float] |
 
 def _refuse_jammed(ready: Prepared, motion: newton.DrivenMotion) -> None:
     """Raise SimulationError where reactions and the friction that they cause do not agree."""
-    rubbing = [force.name for force in ready.packed.forces if force.kind.rubs is not None]
-    jammed = np.flatnonzero(~np.isfinite(motion.lam).all(axis=1)) if rubbing else []
+    frictions = [force.name for force in ready.packed.forces if force.kind.friction_of is not None]
+    jammed = np.flatnonzero(~np.isfinite(motion.lam).all(axis=1)) if frictions else []
     if len(jammed):
         raise SimulationError(
             f"{ready.packed.name}: at t = {motion.times[jammed[0]]:.6g} s reactions and friction do not agree: a joint "
-            f"jams. Take less friction, or a longer guide, in {', '.join(map(repr, rubbing))}"
+            f"jams. Take less friction, or a longer guide, in {', '.join(map(repr, frictions))}"
         )
 
 

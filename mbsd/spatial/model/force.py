@@ -59,7 +59,7 @@ class ForceKind(ByName):
     """Adds one of this kind between two bodies, with what it needs."""
     call: Callable[[Force], Call] | None = None
     """Function of a force: its own function with its frames."""
-    rubs: Callable[[Force], list[float]] | None = None
+    friction_of: Callable[[Force], list[float]] | None = None
     """Function of a force of one row that is friction: its numbers (equations/friction.py)."""
     add: Callable[..., Any] | None = field(default=None, init=False, compare=False)
     """The function ``add(m, name, ...)`` that adds one of this kind, with its arguments checked."""

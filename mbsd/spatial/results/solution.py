@@ -72,7 +72,7 @@ class Solution(Suggesting):
     changes: tuple[str, ...] = ()
     """Changes of the given start that made a simulation consistent."""
     events: tuple[Happening, ...] = ()
-    """What happened in a simulation, in order."""
+    """Events of a simulation, in order."""
     formulation: str = ""
     """Coordinates of a simulation: "reference" or "tree"."""
 

@@ -35,7 +35,7 @@ FRICTION = register_force(
     ForceKind(
         "friction",
         lambda f: [Push(turn(f.i, f.j) if f.joint is not None and f.joint.kind.turns else along(f.i, "z", f.j))],
-        rubs=lambda f: [f.params[name] for name in NUMBERS],
+        friction_of=lambda f: [f.params[name] for name in NUMBERS],
         example=_example,
     )
 )

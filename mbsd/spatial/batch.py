@@ -1,4 +1,4 @@
-"""Many simulations of a mechanism in space that differ in numbers and starts; measures of each are kept."""
+"""Many simulations of a mechanism in space that differ in numbers and starts."""
 
 from __future__ import annotations
 

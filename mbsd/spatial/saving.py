@@ -1,4 +1,4 @@
-"""Files of mechanisms in space: JSON with the calls that build them, written whole; read with clear errors.
+"""Files of mechanisms in space: JSON with the calls that build them.
 
     {"kind": "mbsd mechanism in space", "version": 1, "name": ..., "gravity": [x, y, z],
      "calls": [{"method": "revolute", "name": "A", "first": {"body": "ground"}, "at": [0, 0, 0], ...}, ...]}

@@ -1,4 +1,4 @@
-"""Small motions about an equilibrium or a steady motion in space, in deviations along the axes of the world.
+"""Small motions about an equilibrium or a steady motion in space.
 
     x = (d, theta, u, s)        place and rotation of each body from the base motion, its velocity and angular velocity
     d' = u,  theta' = s + w_0 x theta,  (u, s)' = da        by central differences of order 6

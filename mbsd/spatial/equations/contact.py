@@ -1,4 +1,4 @@
-"""Contact by penalty of a round body with a plane or a height field, and tyres: laws between two frames.
+"""Contact by penalty of a round body with a plane or a height field, and tyres.
 
 The body is a torus about the z axis of frame j: a ring of radius R with a tube of radius r; R = 0 is a ball or a
 point, r = 0 a disc. The surface is the plane x, y of frame i, or a height z = h(x, y) over it, with matter below.

@@ -1,4 +1,4 @@
-"""Forces along a motion: of rows measures, rates and efforts; of functions forces and moments at their frames."""
+"""Forces along a motion: measures, rates and efforts, or forces and moments at frames."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bushing: stiffness and damping of six directions between two frames; its law is in equations/bushing.py.
+"""Bushing: stiffness and damping of six directions between two frames.
 
 s = K x + C x'        x: place of j in the axes of i (m) and rotation vector from i to j (rad), below half a turn
 """

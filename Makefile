@@ -323,6 +323,7 @@ record-events: install ## record them anew, where a change of numbers is meant, 
 hunt: install ## N random mechanisms (1000), each solved again in other words; SEED=1 says which: out/hunt.json
 	$(ALL_KERNELS)
 	@$(PYTHON) -m tools.hunt --n "$${N:-1000}" --seed "$$SEED"
+	@$(PYTHON) -m tools.hunt_space --n 200 --seed "$$SEED"
 
 hunt-parts: install ## parts of N random mechanisms (1000), goes on where it stopped; SEED=1: out/hunt_parts.json
 	$(ALL_KERNELS)

@@ -9,25 +9,37 @@ Every error of a model is raised here, by name, before anything is solved.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+import os
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mbsd.base.arguments import checked_methods
+from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
 from mbsd.base.quantity import counted
 from mbsd.spatial.model.body import Body, Marker
 from mbsd.spatial.model.building import Building
+from mbsd.spatial.model.force import Force
 from mbsd.spatial.model.joint import Joint
+from mbsd.spatial.model.journal import change, recorded
 from mbsd.spatial.model.mechanism import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
+    from typing import Self
+
+    from mbsd.dynamics.batch.simulate_many import Simulations
     from mbsd.results.views import Mobility
+    from mbsd.spatial.analyses.equilibrium import Equilibrium
+    from mbsd.spatial.analyses.linearise import Linearisation
+    from mbsd.spatial.analyses.modes import Mode
     from mbsd.spatial.results.solution import Solution
 
 __all__ = ["STANDARD_GRAVITY", "Body", "Joint", "Marker", "Mechanism"]
 
 
+@recorded
 @checked_methods
 class Mechanism(Building):
     """Bodies, joints, drivers, traced points by name. ``gravity`` in m/s^2; None turns it off."""
@@ -61,19 +73,95 @@ class Mechanism(Building):
         steps: int = 360,
         times: Sequence[float] | np.ndarray | None = None,
         tolerance: float = 1e-7,
+        event_rows: bool = False,
         formulation: str = "auto",
     ) -> Solution:
         """Simulate the motion under gravity from ``start_near`` and ``start_moving``, drivers imposed.
 
         ``steps`` equal output steps over ``duration`` seconds, both ends included; ``times`` (s), rising, replaces
-        both. ``tolerance`` is relative to the mechanism's size, to 1 rad, and to speeds. ``formulation``: "tree"
+        both. ``tolerance`` is relative to the mechanism's size, to 1 rad, and to speeds. ``event_rows`` adds two rows
+        at every event, right before and after it; a terminal event is the last row. ``formulation``: "tree"
         integrates the turns and slides of a spanning tree of joints and keeps the others as rows, "reference" all
-        coordinates; by default the one that is usually quicker. Raises MobilityError for a body without mass or
-        inertia, SimulationError where the integration cannot go on.
+        coordinates, which events and friction need; by default the one that is usually quicker. Raises MobilityError
+        for a body without mass or inertia, SimulationError where the integration cannot go on.
         """
         from mbsd.spatial.dynamics.simulate import simulate
 
-        return simulate(self, duration, steps, times, tolerance, formulation)
+        return simulate(self, duration, steps, times, tolerance, event_rows, formulation)
+
+    def simulate_many(
+        self,
+        measure: Callable[[Solution], Mapping[str, Any]],
+        duration: float | None = None,
+        vary: Mapping[str, Mapping[str, Sequence[float] | np.ndarray]] | None = None,
+        start: Mapping[str, Sequence[float] | np.ndarray] | None = None,
+        moving: Mapping[str, Sequence[float] | np.ndarray] | None = None,
+        steps: int = 360,
+        times: Sequence[float] | np.ndarray | None = None,
+        tolerance: float = 1e-7,
+    ) -> Simulations:
+        """Simulate n times with other numbers and starts, and keep what ``measure`` returns of each solution, by name.
+
+        ``vary``: names to arguments of :meth:`change` and their (n,) values; ``start`` and ``moving``: names to what
+        :meth:`start_near` (degrees, m) and :meth:`start_moving` take. A single value is that of all. Simulations that
+        fail have a reason there. Raises ModelError for what cannot be asked.
+        """
+        from mbsd.spatial.batch import simulate_many
+
+        named = {"duration": duration, "steps": steps, "times": times, "tolerance": tolerance}
+        return simulate_many(self, measure, vary or {}, start or {}, moving or {}, named)
+
+    def change(self, name: Body | Joint | Force | str, **values: Any) -> None:
+        """Change arguments of the method that added a body, joint, driver, force or event; the next solution has them.
+
+            m.change("spring", stiffness=250.0)
+            m.change("top", mass=1.2, com=(0, 0, 0.2))
+
+        The mechanism is then the one that would have been built with them; places that were given as numbers stay.
+        Raises ModelError where that method does, and then changes nothing.
+        """
+        change(self, name if isinstance(name, str) else name.name, values)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the mechanism to a JSON file. Raises ModelError for functions of the user, which no file can hold."""
+        from mbsd.spatial.saving import save
+
+        save(self, path)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """Return the mechanism of a file that :meth:`save` wrote. Raises ModelError for any other."""
+        from mbsd.spatial.saving import load
+
+        return load(path, cls)
+
+    def equilibrium(self, time: float = 0.0, nearest: bool = False) -> Equilibrium:
+        """Return the static equilibrium: pose, reactions, efforts of drivers, stiffness and stability.
+
+        Found from ``start_near``, downhill to a stable pose; ``nearest`` takes the nearest pose that balances, stable
+        or not. Drivers hold where they are at ``time`` (s), laws of forces have the value of then. Raises AssemblyError
+        where the joints do not close, SimulationError where nothing balances.
+        """
+        from mbsd.spatial.analyses.equilibrium import equilibrium
+
+        return equilibrium(self, time, nearest)
+
+    def linearise(self, at: Equilibrium | str = "equilibrium") -> Linearisation:
+        """Return A, eigenvalues and modes of small motions: x' = A x.
+
+        ``at``: "equilibrium" (the stable one, found from start_near), "start" (start_near and start_moving, which must
+        be a steady motion, such as a bicycle that goes straight on), or an equilibrium. Raises MobilityError if nothing
+        can move.
+        """
+        from mbsd.spatial.analyses.linearise import linearise
+
+        if at not in ("equilibrium", "start") and isinstance(at, str):
+            raise ModelError(f"{self.name}: {no_such('state to linearise at', at, ('equilibrium', 'start'))}")
+        return linearise(self, self.equilibrium() if at == "equilibrium" else at)
+
+    def modes(self) -> tuple[Mode, ...]:
+        """Return natural frequencies, damping and shapes about the stable equilibrium, by rising frequency."""
+        return self.linearise().modes
 
     def __repr__(self) -> str:
         bodies, joints, drivers = len(self.bodies) - 1, len(self.joints), len(self.drivers)

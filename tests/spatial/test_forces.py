@@ -10,6 +10,7 @@ import pytest
 from mbsd.base.errors import ModelError
 from mbsd.spatial import Mechanism, constant_rate, harmonic
 from mbsd.spatial.model.force import FORCE_KINDS
+from tests.spatial import machines
 from tests.spatial.machines import about
 
 
@@ -125,3 +126,76 @@ def test_forces_that_cannot_be_are_refused() -> None:
         m.torque("motor", "hinge", 1.0)
     with pytest.raises(ModelError, match="must be finite"):
         m.drag("air", a, damping=math.nan)
+
+
+def test_a_block_slides_down_with_the_friction_of_its_guide() -> None:
+    """Closed forms: a = g (sin - mu cos), and with a guide of length L under a moment N = 2 |M| / L."""
+    tilt, mu = math.radians(30), 0.2
+    down, normal = np.array([math.cos(tilt), 0, -math.sin(tilt)]), np.array([math.sin(tilt), 0, math.cos(tilt)])
+    for length, lever in ((0.0, 0.0), (0.1, 0.3)):
+        m = Mechanism("incline", gravity=(0, 0, -9.81))
+        block = m.body("block", 2.0, com=tuple(lever * down), inertia=(0.1, 0.1, 0.1))
+        m.prismatic("guide", m.ground, block, at=(0, 0, 0), axis=down)
+        m.friction("brakes", "guide", mu, length=length)
+        m.start_moving({"guide": 0.5})
+        sol = m.simulate(duration=0.5, steps=10, tolerance=1e-11)
+        weight = 2.0 * 9.81 * math.cos(tilt)
+        pressed = weight if lever == 0.0 else 2.0 * weight * lever / length
+        wanted = 9.81 * math.sin(tilt) - mu * pressed / 2.0
+        assert np.allclose(sol.joint("guide").slide_acceleration[:2], wanted, rtol=0, atol=1e-9)
+        assert np.allclose(sol.joint("guide").force @ normal, weight, rtol=0, atol=1e-9)
+        assert np.allclose(sol.force("brakes").effort[:2], -mu * pressed, rtol=0, atol=1e-9)
+
+
+def test_a_pendulum_loses_its_swing_to_the_friction_of_its_pin() -> None:
+    """Against scipy: I x'' = -m g c cos x - mu r |R| sign(x'), R from weight and acceleration of the mass."""
+    from scipy.integrate import solve_ivp
+
+    mass, c, inertia, mu, radius, slip = 2.0, 0.6, 0.15, 0.3, 0.05, 0.02
+    m = Mechanism("pendulum", gravity=(0, 0, -9.81))
+    rod = m.body("rod", mass, com=(c, 0, 0), inertia=(0.1, inertia, 0.1))
+    m.revolute("pin", m.ground, rod, at=(0, 0, 0), axis=(0, -1, 0))
+    m.friction("brakes", "pin", mu, radius=radius, static=0.5, stribeck=0.1, viscous=0.02, slip_speed=slip)
+    sol = m.simulate(duration=3.0, steps=30, tolerance=1e-10)
+    whole = inertia + mass * c * c
+
+    def rates(t: float, y: np.ndarray) -> list[float]:
+        x, w = y
+        s = radius * w
+        size = (mu + 0.2 * math.exp(-((s / 0.1) ** 2))) * math.tanh(s / slip) * radius
+        bend = 0.0
+        for _ in range(200):
+            along = mass * (-c * w * w + 9.81 * math.sin(x))
+            across = mass * (c * bend + 9.81 * math.cos(x))
+            bend = (-mass * 9.81 * c * math.cos(x) - size * math.hypot(along, across) - 0.02 * w) / whole
+        return [w, bend]
+
+    exact = solve_ivp(rates, (0, 3), [0.0, 0.0], t_eval=sol.t, rtol=1e-10, atol=1e-12).y[0]
+    assert np.allclose(sol.joint("pin").turn, exact, rtol=0, atol=1e-7)
+    gained = sol.energy.total - sol.energy.total[0]
+    assert sol.work is not None
+    assert np.allclose(gained, sol.work, rtol=0, atol=1e-7)
+    assert sol.stats.power_residual < 1e-8
+
+
+def test_a_sweep_has_the_friction_of_a_simulation() -> None:
+    m = machines.slider_crank()
+    m.friction("rail friction", "rail", 0.2, length=0.05)
+    m.friction("pin friction", "bearing", 0.1, radius=0.01, slip_speed=0.01)
+    swept = m.sweep(duration=0.3, steps=6)
+    simulated = m.simulate(duration=0.3, steps=6, tolerance=1e-11)
+    assert np.allclose(swept.driver("motor").torque, simulated.driver("motor").torque, rtol=0, atol=1e-7)
+    assert np.allclose(swept.force("rail friction").effort, simulated.force("rail friction").effort, rtol=0, atol=1e-7)
+    rail = swept.joint("rail")
+    moment = 2 * np.linalg.norm(rail.moment, axis=1) / 0.05
+    pressed = np.maximum(rail.magnitude, moment)
+    assert np.allclose(np.abs(swept.force("rail friction").effort[1:]), 0.2 * pressed[1:], rtol=0, atol=1e-9)
+    assert swept.stats.power_residual < 1e-9
+    loop = machines.bennett()
+    loop.friction("brakes", "hinge 0", 0.1, radius=0.01)
+    with pytest.raises(ModelError, match="'brakes' is friction, and joints repeat each other"):
+        loop.sweep()
+    with pytest.raises(ModelError, match="'cross' is universal; friction needs"):
+        m.friction("other", "cross", 0.1)
+    with pytest.raises(ModelError, match="a revolute joint needs the radius of its pin"):
+        m.friction("other", "bearing", 0.1)

@@ -57,6 +57,10 @@ def _restart(dyn, scratch, contacts, state):
         users.find_sides(dyn, contacts.events, state)
 
 
+decide = alternatives({}, resolve)
+"""Decides what contacts and joints do after an event; formulations without contacts bring one that does nothing."""
+
+
 @internal
 def _resolve(dyn, scratch, contacts, state, met):
     contacts.clock[arrays.LOGGED] = 0.0
@@ -64,7 +68,7 @@ def _resolve(dyn, scratch, contacts, state, met):
     contacts.clock[arrays.FAILURE] = 0.0
     if contacts.place.shape[0] == 0:
         return True
-    return resolve(dyn, scratch, contacts, state, met)
+    return decide(dyn, scratch, contacts, state, met)
 
 
 @internal

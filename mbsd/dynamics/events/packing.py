@@ -243,7 +243,7 @@ MOST = 20_000
 def why_not_compiled(events: Sequence[Event], longest: float) -> str | None:
     """Return why these events do not go in a batch, or None. ``longest``: the longest step (s)."""
     for event in events:
-        if _looks(event, longest) > MOST:
+        if looks_of(event, longest) > MOST:
             return f"event '{event.name}': its shortest is less than 1/{MOST // 2} of the longest step"
         for what, function in (("function", event.value), ("action", event.action)):
             if function is None or isinstance(function, Reaching):
@@ -275,7 +275,7 @@ def events_of(ready: PreparedDynamics, events: Sequence[Event], longest: float, 
         level = event.value.level if isinstance(event.value, Reaching) else 0.0
         number.append((0.0, level, event.shortest or 0.0, 0.0))
     most = max((len(frames) for frames in [[], *(event.frames for event in events), *_ready(events)]), default=0)
-    n3, looks = len(ready.initial.q), max((_looks(event, longest) for event in events), default=0)
+    n3, looks = len(ready.initial.q), max((looks_of(event, longest) for event in events), default=0)
     return users.Events(
         np.array(table, np.int64).reshape(-1, users.ACTION_FRAMES + 1),
         np.array(number).reshape(-1, users.UNKNOWN + 1),
@@ -342,7 +342,7 @@ def _ready(events: Sequence[Event]) -> list[tuple[Marker, ...]]:
     return [event.value.frames for event in events if isinstance(event.value, Reaching)]
 
 
-def _looks(event: Event, longest: float) -> int:
+def looks_of(event: Event, longest: float) -> int:
     """Return room for the values of an event in one step."""
     asked = math.ceil(PER_SHORTEST * longest / event.shortest) if event.shortest else 0
     return 16 + max(MOST_VALUES, asked)

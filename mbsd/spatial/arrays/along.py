@@ -9,6 +9,7 @@ import numpy as np
 from mbsd.equations.laws import Laws
 from mbsd.spatial.arrays.packing import Packed
 from mbsd.spatial.equations.evaluation import tabulate, tabulate_loads
+from mbsd.spatial.equations.friction import ROW
 
 
 def tabulated(
@@ -50,4 +51,9 @@ def loads_along(packed: Packed, laws: Laws, motion: Any) -> tuple[np.ndarray, np
     series = (motion.times, motion.drives, motion.q, motion.v, motion.a, motion.turn)
     whole = (np.ascontiguousarray(part) for part in series)
     tabulate_loads(packed.system, laws, *whole, packed.ws, load, lam)
+    frictions = packed.system.friction[:, ROW]
+    if len(frictions):
+        lam[:, frictions] = motion.lam[:, frictions]
+        _, jac, _ = _all_rows(packed, motion.drives, motion.q, motion.v, motion.turn)
+        load[:, 3:] -= np.einsum("trc,tr->tc", jac[:, frictions], lam[:, frictions])
     return load, lam

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from mbsd.base.arguments import law_of
+from mbsd.compiling.callback import Callback
 from mbsd.model.laws import Motion
+from mbsd.spatial.arrays.calls import addresses_of, calls_of
 from mbsd.spatial.arrays.tables import Tables
 from mbsd.spatial.equations.evaluation import measure
 from mbsd.spatial.equations.system import System, Workspace, workspace_for
 from mbsd.spatial.model.body import Body
-from mbsd.spatial.model.force import Force
+from mbsd.spatial.model.force import Force, Push
 from mbsd.spatial.model.joint import Joint
 from mbsd.spatial.model.mechanism import Model
 from mbsd.spatial.model.rotation import euler_parameters
@@ -44,6 +47,20 @@ class Packed:
     """A length of the mechanism (m)."""
     forces: Sequence[Force] = field(default=())
     """Forces, whose rows stand behind the h rows of joints and drivers."""
+    callbacks: Sequence[Callback] = field(default=())
+    """Functions of the user in forces."""
+    watched: Mapping[str, int] = field(default_factory=dict)
+    """Numbers of the turns that are counted for events, by the names of joints."""
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return all but functions at addresses, which are those of this process."""
+        return {key: value for key, value in vars(self).items() if key != "callbacks"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Restore arrays and names, and give functions addresses anew."""
+        vars(self).update(state)
+        addresses, self.callbacks = addresses_of(self.name, self.forces)
+        self.system.call[:, 0] = addresses
 
     @property
     def body_names(self) -> list[str]:
@@ -96,6 +113,13 @@ class Packed:
             with law_of(f"{self.name}: driver '{driver.name}'"):
                 out[:, k] = motion(times)
         return out
+
+    def check_callbacks(self, accepted: bool) -> None:
+        """Raise what functions of the user raised, in steps that were ``accepted`` only what no step could refuse."""
+        for callback in self.callbacks:
+            if accepted:
+                callback.forget()
+            callback.check()
 
     def settle_laws(self, start: float, end: float) -> None:
         """Make the laws ready for times ``start`` .. ``end`` (s)."""
@@ -170,17 +194,23 @@ def pack(
         driver_rows += row.count * reacts
     held, forces = len(row_joint), [] if extra else list(m.forces.values())
     pushes = [push for force in forces for push in force.pushes]
+    turning = [joint for joint in m.joints.values() if joint.kind.turns and m.events and not extra]
+    pushes += [Push(turn(joint.i, joint.j)) for joint in turning]
     for k, push in enumerate(pushes):
         tables.add(push.row, held + k)
     values += [0.0] * len(pushes)
     wrench += [(-1, 0)] * len(pushes)
     arms = [tables.place(joint.j) for joint in joints[:passive]]
+    addresses, callbacks = addresses_of(m.name, forces)
+    calls = calls_of(addresses, forces, tables)
     system = System(
         mass=np.array([body.mass for body in bodies]),
         inertia=np.array([body.principal[0] for body in bodies]),
         gravity=np.array(m.gravity, float),
         **tables.arrays(held + len(pushes)),
         held=held,
+        **calls,
+        **_frictions_of(forces, held, joints, row_joint, wrench, bodies, arms),
         force=np.array(_laws_of(forces, held, len(m.drivers)), np.int64).reshape(-1, 2),
         push=np.array([(p.stiffness, p.free, p.damping, p.amount) for p in pushes], float).reshape(-1, 4),
         value=np.array(values, float),
@@ -192,8 +222,29 @@ def pack(
     return Packed(
         name=m.name, bodies=bodies, joints=joints, motions=motions, row_joint=np.array(row_joint, np.int64),
         row_unit=units, driver_rows=driver_rows, system=system, ws=workspace_for(system), size=size_of(m),
-        forces=forces,
+        forces=forces, callbacks=callbacks,
+        watched={joint.name: len(system.turn) - len(turning) + k for k, joint in enumerate(turning)},
     )  # fmt: skip
+
+
+def _frictions_of(
+    forces: Sequence[Force], held: int, joints: Sequence[Joint], row_joint: list[int], wrench: list[tuple[int, int]],
+    bodies: list[Body], arms: list[int],
+) -> dict[str, np.ndarray]:  # fmt: skip
+    """Return the fields of a System for friction of joints."""
+    table, numbers, row = [], [], held
+    for force in forces:
+        if force.kind.friction_of is not None and force.joint is not None:
+            joint = joints.index(force.joint)
+            own = [r for r, k in enumerate(row_joint) if k == joint]
+            second = bodies.index(force.joint.j.body)
+            table.append((row, own[0], own[-1] + 1, wrench[own[0]][1], second, arms[joint]))
+            numbers.append(force.kind.friction_of(force))
+        row += len(force.pushes)
+    return {
+        "friction": np.array(table, np.int64).reshape(-1, 6),
+        "friction_number": np.array(numbers, float).reshape(-1, 8),
+    }
 
 
 def _laws_of(forces: Sequence[Force], first: int, drivers: int) -> list[tuple[int, int]]:

@@ -19,6 +19,7 @@ class Tables:
         self._axes: dict[tuple[Any, ...], int] = {}
         self._terms: dict[str, list[tuple[int, ...]]] = {kind: [] for kind in TERMS}
         self._weights: dict[str, list[float]] = {kind: [] for kind in TERMS}
+        self._rounds: list[tuple[float, float]] = []
         self._row_bodies: list[list[int]] = []
 
     def add(self, row: Row, first: int) -> list[int]:
@@ -28,6 +29,7 @@ class Tables:
             columns = tuple(6 * sides.index(self._number[marker.body.name]) for marker in (t.i, t.j))
             self._terms[t.kind].append((first, *self._measured(t), *columns))
             self._weights[t.kind].append(t.weight)
+            self._rounds += [t.round] * (t.kind == "roll")
         self._row_bodies += [sides] * row.count
         return sides
 
@@ -38,6 +40,8 @@ class Tables:
         if t.kind == "turn":
             return self._axis(t.i, "x"), self._axis(t.i, "y"), self._axis(t.j, "x")
         ends = self.place(t.i), self.place(t.j)
+        if t.kind == "roll":
+            return (*(self._axis(marker, axis) for marker in (t.i, t.j) for axis in AXES), *ends)
         return (self._axis(t.i, t.first), *ends) if t.kind == "along" else ends
 
     def place(self, marker: Marker) -> int:
@@ -52,7 +56,7 @@ class Tables:
 
     def arrays(self, rows: int) -> dict[str, np.ndarray]:
         """Return the fields of a System that these tables hold, for ``rows`` of J."""
-        width = {"point": 5, "dot": 5, "along": 6, "distance": 5, "turn": 6}
+        width = {"point": 5, "dot": 5, "along": 6, "distance": 5, "turn": 6, "roll": 11}
         sides = max((len(bodies) for bodies in self._row_bodies), default=2)
         row_body = np.full((rows, sides), -1, np.int64)
         for r, bodies in enumerate(self._row_bodies):
@@ -64,9 +68,10 @@ class Tables:
             "axis_body": axes.reshape(-1, 4)[:, 0].astype(np.int64),
             "axis": np.ascontiguousarray(axes.reshape(-1, 4)[:, 1:]),
             "row_body": row_body,
+            "roll_number": np.array(self._rounds, float).reshape(-1, 2),
         }
         for kind, columns in width.items():
             out[kind] = np.array(self._terms[kind], np.int64).reshape(-1, columns)
-            if kind != "point":
+            if kind not in ("point", "roll"):
                 out[f"{kind}_weight"] = np.array(self._weights[kind], float)
         return out

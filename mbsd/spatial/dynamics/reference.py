@@ -21,15 +21,17 @@ OWN = 0.0025
 class ReferenceCoordinates:
     """All coordinates of a mechanism with their start."""
 
-    def __init__(self, packed: Packed, q: np.ndarray, v: np.ndarray, repeats: bool) -> None:
+    def __init__(self, packed: Packed, q: np.ndarray, v: np.ndarray, repeats: bool, start: float) -> None:
         """Start from a closed pose q (3 + 7 n,) with velocities v (3 + 6 n,) in the world.
 
-        ``repeats``: some rows of joints repeat each other.
+        ``repeats``: some rows of joints repeat each other. ``start``: the time (s).
         """
         self.packed, self.ws = packed, packed.ws
         self.kept = self._best_rows(q)
         self.limit = OWN if repeats else 0.0
         self.entries, self.rates = len(q), packed.freedoms
+        self.counted = np.zeros(1 + len(packed.ws.turn))
+        self.counted[0] = start
         self.y = np.zeros((2, len(q)))
         self.y[0] = q
         self.y[1, : len(v)] = _to_bodies(q, v)
@@ -63,7 +65,12 @@ class ReferenceCoordinates:
             system=packed.system, laws=laws, loads=Switches(np.zeros((1, WIDTH))), schur=none, sliding=none,
             envelope=envelope, factors=factors, inertia=inertia, inverse=inverse, weight=weight, per_size=per_size,
             world=np.zeros(6 * nb - 3), pushed=np.zeros(len(packed.ws.phi)), limit=np.array([self.limit]), turns=turns,
+            counted=self.counted,
         )  # fmt: skip
+
+    def check_callbacks(self, accepted: bool) -> None:
+        """Raise what functions of the user raised; see Packed."""
+        self.packed.check_callbacks(accepted)
 
     def choose(self, y: np.ndarray) -> None:
         """Choose rows anew at a state (2, n), where those in use come near to depend on each other."""

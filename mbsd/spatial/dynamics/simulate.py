@@ -13,12 +13,14 @@ from mbsd.base.errors import InitialConditionWarning, MobilityError, ModelError,
 from mbsd.base.names import no_such
 from mbsd.base.quantity import counted
 from mbsd.base.warning import warn
+from mbsd.dynamics.events.loop import OVER, run_events
 from mbsd.dynamics.integrators.dop853 import DOP853
 from mbsd.dynamics.reference.arrays import Scratch, full_matrices
 from mbsd.dynamics.simulate import output_times, refuse_bad_steps
 from mbsd.dynamics.state import (
     ACCEPTED,
     CHOOSE,
+    NEXT,
     REACHED,
     STEP_TOO_SMALL,
     TIME,
@@ -29,14 +31,16 @@ from mbsd.dynamics.state import (
     start_state,
 )
 from mbsd.kinematics.pose.held_values import independent_rows
+from mbsd.model.event import Happening
 from mbsd.results.views import Mobility
 from mbsd.spatial.arrays.packing import Packed
+from mbsd.spatial.dynamics.events import Events
 from mbsd.spatial.dynamics.reference import ReferenceCoordinates
 from mbsd.spatial.dynamics.start import start_velocities
 from mbsd.spatial.dynamics.tree.coordinates import TreeCoordinates
 from mbsd.spatial.equations.evaluation import wrenches_along
 from mbsd.spatial.kinematics.close import assemble
-from mbsd.spatial.kinematics.mobility import joint_mobility
+from mbsd.spatial.kinematics.mobility import joint_mobility, refuse_shared_friction
 from mbsd.spatial.kinematics.newton import DrivenMotion
 from mbsd.spatial.kinematics.prepared import packed_checked
 from mbsd.spatial.model.mechanism import Model
@@ -52,7 +56,7 @@ STEPS = 10**9
 
 def simulate(
     m: Model, duration: float | None, steps: int, times: Sequence[float] | np.ndarray | None, tolerance: float,
-    formulation: str,
+    event_rows: bool, formulation: str,
 ) -> Solution:  # fmt: skip
     """Return a simulation; see :meth:`mbsd.spatial.mechanism.Mechanism.simulate`."""
     same_fields: Any = m
@@ -60,7 +64,7 @@ def simulate(
     refuse_bad_steps(same_fields, grid, tolerance, None)
     if formulation not in FORMULATIONS:
         raise ModelError(f"{m.name}: {no_such('formulation', formulation, FORMULATIONS)}")
-    return Run(m, grid, tolerance, formulation).followed()
+    return Run(m, grid, tolerance, formulation, event_rows).followed()
 
 
 @dataclass
@@ -71,6 +75,7 @@ class Run:
     grid: np.ndarray
     tolerance: float
     formulation: str = AUTO
+    event_rows: bool = False
 
     def __post_init__(self) -> None:
         start, end = float(self.grid[0]), float(self.grid[-1])
@@ -81,6 +86,7 @@ class Run:
         _refuse_without_inertia(packed)
         q, turns = assemble(self.m, packed, start)
         self.mobility = joint_mobility(packed, q)
+        refuse_shared_friction(packed, self.mobility)
         self.drive = packed.drives(self.grid[:1])[0]
         begun = start_velocities(self.m, packed, q, self.drive)
         if begun.changes:
@@ -98,11 +104,14 @@ class Run:
         self, q: np.ndarray, v: np.ndarray, turns: np.ndarray, rank: int
     ) -> TreeCoordinates | ReferenceCoordinates:
         """Return the coordinates that were asked for, else those that are likely to be quicker."""
-        if self.formulation != REFERENCE:
+        why = _why_reference(self.m)
+        if self.formulation == TREE and why:
+            raise ModelError(f"{self.m.name}: formulation='tree' knows no {why}; leave it out")
+        if self.formulation != REFERENCE and not why:
             tree = TreeCoordinates(self.m, self.packed, q, v, turns, rank)
             if self.formulation == TREE or tree.nanoseconds() < ReferenceCoordinates.nanoseconds(self.packed):
                 return tree
-        return ReferenceCoordinates(self.packed, q, v, self.mobility.redundant_rows > 0)
+        return ReferenceCoordinates(self.packed, q, v, self.mobility.redundant_rows > 0, float(self.grid[0]))
 
     def scratch(self) -> Scratch:
         """Return scratch for a run."""
@@ -134,19 +143,55 @@ class Run:
         state = start_state(self.coordinates.y, rows, float(self.grid[0]))
         return state, output_for(self.grid, 7 * len(self.packed.bodies) - 4, rows)
 
+    def start(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return pose (3 + 7 n,) and velocities (3 + 6 n,) at the start, w in the world; of reference coordinates."""
+        y = self.coordinates.y[:, None]
+        return y[0, 0], self.coordinates.to_world(y[0], y[1, :, : self.packed.freedoms + 3].copy())[0]
+
     def followed(self) -> Solution:
         """Return the motion until the last output. Raises SimulationError where it cannot go on."""
-        end = float(self.grid[-1])
+        end, watched, none = float(self.grid[-1]), list(self.m.events.values()), np.zeros(0)
         dyn = self.dynamics()
         (state, out), scratch, settings = self.begun(), self.scratch(), self.settings()
+        events = Events(self.packed, watched, state, settings.longest, end, dyn, self.event_rows) if watched else None
+
+        def advance(contacts: Any, most: int) -> int:
+            return run_events(dyn, scratch, state, settings, contacts, out, end, most, none, none)
+
         while True:
-            status = DOP853.advance(dyn, scratch, state, out, settings, end, STEPS)
-            if status == REACHED:
-                return self._solution(out, int(state.count[ACCEPTED]))
+            if events is None:
+                status = DOP853.advance(dyn, scratch, state, out, settings, end, STEPS)
+            else:  # rows are chosen between steps, never while one is tried
+                choosing, dyn.limit[0] = float(dyn.limit[0]), 0.0
+                status = events.follow(advance, state, end, choosing > 0.0)
+                dyn.limit[0] = choosing
+                if status == CHOOSE and not scratch.report[0] < choosing:
+                    continue
+            self.coordinates.check_callbacks(status in (REACHED, OVER, CHOOSE))
+            if status in (REACHED, OVER):
+                break
             if status != CHOOSE or isinstance(self.coordinates, TreeCoordinates):
                 raise self._refusal(status, state)
             self.coordinates.choose(state.y)
             dyn = self.dynamics()
+        if events is not None:
+            out = self._with_rows(out, int(state.count[NEXT]), events)
+        happened = () if events is None else tuple(events.happenings)
+        return self._solution(out, int(state.count[ACCEPTED]), happened)
+
+    def _with_rows(self, out: Any, written: int, events: Events) -> Any:
+        """Return outputs that were written, with those beside events between them."""
+        rows = events.rows
+        t, y, a, lam, work, turns = (
+            np.array([row[k] for row in rows]).reshape(len(rows), *part.shape[1:])
+            for k, part in enumerate((out.t, out.y, out.a, out.lam, out.work, self.turns))
+        )
+        parts = [(out.t, t), (out.y, y), (out.a, a), (out.lam, lam), (out.work, work), (out.margin, np.ones(len(t)))]
+        order = np.argsort(np.concatenate([out.t[:written], t]), kind="stable")
+        self.turns = np.concatenate([self.turns[:written], turns])[order]
+        whole = Output(*(np.concatenate([series[:written], added])[order] for series, added in parts))
+        self.grid = whole.t
+        return whole
 
     def _refusal(self, status: int, state: Any) -> SimulationError:
         why = "its steps shrink to nothing" if status == STEP_TOO_SMALL else "its numbers are no longer finite"
@@ -155,7 +200,7 @@ class Run:
             "is singular there, or bodies lack inertia; look at the joints in this pose"
         )
 
-    def _solution(self, out: Any, steps: int) -> Solution:
+    def _solution(self, out: Any, steps: int, happened: tuple[Happening, ...]) -> Solution:
         packed, count = self.packed, len(self.grid)
         q, body = np.ascontiguousarray(out.y[:, 0]), packed.freedoms + 3
         v, a = (self.coordinates.to_world(q, part[:, :body]) for part in (out.y[:, 1], out.a))
@@ -173,7 +218,15 @@ class Run:
         return Solution(
             self.m, packed, motion, np.ones(count, bool), self.mobility, self.laws, dict(self.m.starts),
             steps=steps, work=out.work, changes=self.changes, formulation=TREE if in_tree else REFERENCE,
+            events=happened,
         )  # fmt: skip
+
+
+def _why_reference(m: Model) -> str:
+    """Return what only reference coordinates know of a mechanism; empty: nothing."""
+    if m.events:
+        return "events"
+    return "friction of joints" if any(force.kind.friction_of is not None for force in m.forces.values()) else ""
 
 
 def _refuse_superfluous_drivers(packed: Packed, independent: list[int], mobility: Mobility) -> None:

@@ -13,6 +13,7 @@ from mbsd.spatial.equations.distance import bend_distances, measure_distances
 from mbsd.spatial.equations.dot import bend_dots, measure_dots
 from mbsd.spatial.equations.forces import apply_forces
 from mbsd.spatial.equations.point import bend_points, measure_points
+from mbsd.spatial.equations.roll import bend_rolls, measure_rolls
 from mbsd.spatial.equations.turn import bend_turns, measure_turns
 from mbsd.spatial.equations.vectors import carry_vectors, rotate_bodies, turn_vectors
 
@@ -41,6 +42,8 @@ def evaluate_rows(system, q, drive, ws):
         measure_distances(system, ws)
     if system.turn.shape[0] > 0:
         measure_turns(system, ws)
+    if system.roll.shape[0] > 0:
+        measure_rolls(system, ws)
 
 
 @inlined
@@ -67,6 +70,8 @@ def evaluate_gamma(system, v, drive, ws, out):
         bend_distances(system, ws, out)
     if system.turn.shape[0] > 0:
         bend_turns(system, ws, out)
+    if system.roll.shape[0] > 0:
+        bend_rolls(system, ws, out)
 
 
 @apart
@@ -137,8 +142,8 @@ def tabulate_loads(system, laws, times, drives, q, v, a, turns, ws, load, lam):
             ws.guess[n] = turns[k, n]
         evaluate_position(system, q[k], drives[k], ws)
         find_loads(system, v[k], a[k], ws, load[k])
-        if system.force.shape[0] > 0:
-            apply_forces(system, laws, times[k], v[k], ws, load[k], lam[k])
+        if system.force.shape[0] + system.call.shape[0] > 0:
+            apply_forces(system, laws, times[k], q[k], v[k], ws, load[k], lam[k])
 
 
 @kernel

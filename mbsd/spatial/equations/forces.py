@@ -1,12 +1,15 @@
 """Forces: rows that nothing holds push by what they measure.
 
 F = amount + law(t) - stiffness (x - free) - damping x',    x' = J v,    Q += J^T F
+
+Forces by functions: calls.py.
 """
 
 from __future__ import annotations
 
 from mbsd.compiling.jit import internal, lazy
 from mbsd.equations.laws import law_at
+from mbsd.spatial.equations.calls import apply_calls
 
 
 @internal
@@ -32,9 +35,11 @@ def push_row(system, ws, row, size, load):
 
 
 @lazy(float)
-def apply_forces(system, laws, t, v, ws, load, lam):
+def apply_forces(system, laws, t, q, v, ws, load, lam):
     """Add all forces to load (3 + 6 n,); lam (m,) of their rows gets -F. Returns their power (W)."""
     power = 0.0
+    if system.call.shape[0] > 0:
+        power = apply_calls(system, t, q, v, ws, load)
     for n in range(system.force.shape[0]):
         row = system.force[n, 0]
         rate = along_row(system, ws, row, v)

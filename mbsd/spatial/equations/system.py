@@ -43,6 +43,10 @@ class System(NamedTuple):
     """(., 5) row, place i, place j, columns."""
     turn: Any
     """(., 6) row, x and y axis of i, x axis of j, columns."""
+    roll: Any
+    """(., 11) row, axes x, y, z of i and of j, place i, place j, columns."""
+    roll_number: Any
+    """(., 2) radii of ring and tube (m)."""
     dot_weight: Any
     along_weight: Any
     distance_weight: Any
@@ -60,6 +64,18 @@ class System(NamedTuple):
     """(f, 2) row and law of each force; law 0: none."""
     push: Any
     """(f, 4) its stiffness, free value, damping and constant amount."""
+    friction: Any
+    """(r, 6) rows of forces that are friction; see friction.py."""
+    friction_number: Any
+    """(r, 8)"""
+    call: Any
+    """(c, 4) address of the function of each force that has one, its first frame, how many it has, first input."""
+    frame_place: Any
+    """(f,) place of each frame, as arms number them."""
+    frame_turn: Any
+    """(f, 4) Euler parameters from each frame to principal axes."""
+    inputs: Any
+    """(i,) inputs of all functions, whose numbers stay."""
     wrench: Any
     """(m, 2) joint of each row of joints, and column of its second body; -1: a driver's."""
     joint_arm: Any
@@ -105,6 +121,14 @@ class Workspace(NamedTuple):
     """(3,) value of a law with two derivatives."""
     load: Any
     """(3 + 6 n,) force and torque in the world that are left for multipliers."""
+    inputs: Any
+    """(i,) of functions of forces; see calls.py."""
+    outputs: Any
+    """(c, o) what they gave last."""
+    friction: Any
+    """(5, r) of friction; see friction.py."""
+    roll: Any
+    """(8, 3) vectors of one roll; see roll.py."""
 
 
 def workspace_for(system: System) -> Workspace:
@@ -132,4 +156,8 @@ def workspace_for(system: System) -> Workspace:
         delta=np.zeros((2, 6 * bodies - 3)),
         law=np.zeros(3),
         load=np.zeros(6 * bodies - 3),
+        roll=np.zeros((8, 3)),
+        friction=np.zeros((5, len(system.friction))),
+        inputs=system.inputs.copy(),
+        outputs=np.zeros((len(system.call), 6 * int(system.call[:, 2].max(initial=0)) + 1)),
     )

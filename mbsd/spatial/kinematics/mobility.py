@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbsd.base.errors import MobilityError, SingularPoseError
+from mbsd.base.errors import MobilityError, ModelError, SingularPoseError
 from mbsd.base.quantity import counted
 from mbsd.kinematics.pose.held_values import RANK_TOLERANCE, independent_rows
 from mbsd.kinematics.pose.mobility import better_rows
@@ -44,6 +44,17 @@ def joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:
         singular=start < len(kept),
         free_bodies=tuple(_moving(packed, best)) if free else (),
     )
+
+
+def refuse_shared_friction(packed: Packed, joints: Mobility) -> None:
+    """Raise ModelError for friction of reactions that joints share."""
+    frictions = [force.name for force in packed.forces if force.kind.friction_of is not None]
+    if frictions and joints.redundant_rows:
+        raise ModelError(
+            f"{packed.name}: force '{frictions[0]}' is friction, and joints repeat each other here "
+            f"({', '.join(map(repr, joints.redundant))}), so nothing says which of them carries. Replace a joint by a "
+            "spherical or cylindrical one"
+        )
 
 
 def choose_rows(packed: Packed, q: np.ndarray, time: float, joints: Mobility) -> np.ndarray:

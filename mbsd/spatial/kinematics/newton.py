@@ -41,6 +41,7 @@ from mbsd.spatial.equations.evaluation import (
     find_wrenches,
 )
 from mbsd.spatial.equations.forces import apply_forces
+from mbsd.spatial.equations.friction import add_swept_friction
 
 NARROW = 4
 """Status of a step at which rows of redundant joints come near to depend on each other."""
@@ -204,9 +205,11 @@ def _begin(motion, ws, k, h, pose):
 def _balance(system, laws, seq, fac, ws, motion, k):
     """Fill multipliers and wrenches of step k."""
     find_loads(system, motion.v[k], motion.a[k], ws, ws.load)
-    if system.force.shape[0] > 0:
-        apply_forces(system, laws, motion.times[k], motion.v[k], ws, ws.load, motion.lam[k])
+    if system.force.shape[0] + system.call.shape[0] > 0:
+        apply_forces(system, laws, motion.times[k], motion.q[k], motion.v[k], ws, ws.load, motion.lam[k])
     solve_transposed(seq, fac, ws.load, motion.lam[k])
+    if system.friction.shape[0] > 0:
+        add_swept_friction(system, seq, fac, ws, motion.v[k], ws.load, motion.lam[k])
     find_wrenches(system, ws, motion.lam[k], motion.wrench[k])
 
 

@@ -14,7 +14,7 @@ from mbsd.kinematics.elimination import Elimination, Factors, plan
 from mbsd.results.views import Mobility
 from mbsd.spatial.arrays.packing import Packed, pack
 from mbsd.spatial.kinematics.close import assemble
-from mbsd.spatial.kinematics.mobility import choose_rows, joint_mobility
+from mbsd.spatial.kinematics.mobility import choose_rows, joint_mobility, refuse_shared_friction
 from mbsd.spatial.model.mechanism import Model
 
 
@@ -40,8 +40,15 @@ def prepare(m: Model, start: float = 0.0, end: float = 1.0) -> Prepared:
     packed.settle_laws(start, end)
     same_fields: Any = packed
     refuse_bad_laws(same_fields, start, end)
+    rolling = [joint.name for joint in m.joints.values() if joint.kind.name == "rolling"]
+    if rolling:
+        raise ModelError(
+            f"{m.name}: '{rolling[0]}' rolls, so no value of the drivers says where it is. Call simulate; a sweep "
+            "needs joints that hold places"
+        )
     q0, turns = assemble(m, packed, start)
     mobility = joint_mobility(packed, q0)
+    refuse_shared_friction(packed, mobility)
     kept = choose_rows(packed, q0, start, mobility)
     laws = compiled_laws(same_fields, start, end) if any(force.laws for force in packed.forces) else pack_laws(())
     return Prepared(packed, q0, turns, *planned(packed, kept), mobility, laws)

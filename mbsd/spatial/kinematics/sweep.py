@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.base.errors import AssemblyError, BranchError, SingularPoseError
+from mbsd.base.errors import AssemblyError, BranchError, SimulationError, SingularPoseError
 from mbsd.base.quantity import written
 from mbsd.kinematics.march import REDUNDANT_GAP, RUNAWAY, driver_values
 from mbsd.kinematics.newton import BRANCH_DOUBT, DONE
@@ -37,9 +37,22 @@ def sweep(m: Model, duration: float | None, steps: int, times: Sequence[float] |
     same_fields = ready.packed
     taken = Steps(same_fields, grid)
     motion = march(ready, taken, not ready.mobility.redundant_rows)
+    ready.packed.check_callbacks(accepted=False)
+    _refuse_jammed(ready, motion)
     return Solution(
         m, ready.packed, motion, taken.wanted, ready.mobility, ready.laws, dict(m.starts), inserted_steps=taken.inserted
     )
+
+
+def _refuse_jammed(ready: Prepared, motion: newton.DrivenMotion) -> None:
+    """Raise SimulationError where reactions and the friction that they cause do not agree."""
+    frictions = [force.name for force in ready.packed.forces if force.kind.friction_of is not None]
+    jammed = np.flatnonzero(~np.isfinite(motion.lam).all(axis=1)) if frictions else []
+    if len(jammed):
+        raise SimulationError(
+            f"{ready.packed.name}: at t = {motion.times[jammed[0]]:.6g} s reactions and friction do not agree: a joint "
+            f"jams. Take less friction, or a longer guide, in {', '.join(map(repr, frictions))}"
+        )
 
 
 def _room(ready: Prepared, steps: Steps, reactions: bool) -> newton.DrivenMotion:

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from mbsd.spatial.model.drivers import drive_distance, drive_slide, drive_turn
+from mbsd.spatial.model.events import event
 from mbsd.spatial.model.forces.actuator import actuator
+from mbsd.spatial.model.forces.bushing import bushing
+from mbsd.spatial.model.forces.contact import contact, tyre
 from mbsd.spatial.model.forces.drag import drag
+from mbsd.spatial.model.forces.friction import friction
 from mbsd.spatial.model.forces.spring import spring
 from mbsd.spatial.model.forces.torque import torque
 from mbsd.spatial.model.forces.torsion_spring import torsion_spring
+from mbsd.spatial.model.forces.user_force import user_force
 from mbsd.spatial.model.joints.belt import belt
 from mbsd.spatial.model.joints.constant_velocity import constant_velocity
 from mbsd.spatial.model.joints.cylindrical import cylindrical
@@ -24,6 +29,7 @@ from mbsd.spatial.model.joints.prismatic import prismatic
 from mbsd.spatial.model.joints.rack_and_pinion import rack_and_pinion
 from mbsd.spatial.model.joints.revolute import revolute
 from mbsd.spatial.model.joints.rod_with_fork import rod_with_fork
+from mbsd.spatial.model.joints.rolling import rolling
 from mbsd.spatial.model.joints.screw import screw
 from mbsd.spatial.model.joints.spherical import spherical
 from mbsd.spatial.model.joints.universal import universal
@@ -48,6 +54,7 @@ class Building(Model):
     parallel = parallel
     lock = lock
     screw = screw
+    rolling = rolling
     gear_pair = gear_pair
     rack_and_pinion = rack_and_pinion
     belt = belt
@@ -58,7 +65,14 @@ class Building(Model):
     torque = torque
     actuator = actuator
     drag = drag
+    friction = friction
+    bushing = bushing
+    contact = contact
+    tyre = tyre
+    user_force = user_force
 
     drive_turn = drive_turn
     drive_slide = drive_slide
     drive_distance = drive_distance
+
+    event = event

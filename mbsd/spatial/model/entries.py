@@ -12,7 +12,7 @@ from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such, shown
 from mbsd.model.laws import Motion
 from mbsd.model.laws.function import Function
-from mbsd.spatial.model.body import Direction, Fixing, Marker, Place, refuse_parallel
+from mbsd.spatial.model.body import Direction, Fixing, Marker, Place, place_given, refuse_parallel
 from mbsd.spatial.model.force import Force, ForceKind
 from mbsd.spatial.model.joint import Joint, JointKind
 from mbsd.spatial.model.mechanism import Model, own_body
@@ -28,7 +28,13 @@ def markers_given(
 
     ``axes`` (3, 3) are those of the world that both get. Raises ModelError.
     """
-    what = f"{m.name}: joint '{name}'"
+    return force_markers(m, f"{m.name}: joint '{name}'", first, second, at, axes)
+
+
+def force_markers(
+    m: Model, what: str, first: Fixing, second: Fixing, at: Place | None, axes: np.ndarray | None
+) -> tuple[Marker, Marker]:
+    """Return the markers of what acts between two bodies, as :func:`markers_given` does; ``what`` names it."""
     given = [part for part in (first, second) if isinstance(part, Marker)]
     if len(given) == 2:
         if at is not None or axes is not None:
@@ -103,6 +109,29 @@ def ends_given(
             markers.append(own_body(m, body, what).world_marker(np.array(place, float), np.eye(3)))
     refuse_same(what, *markers)
     return markers[0], markers[1]
+
+
+def round_ends(
+    m: Model, what: str, surface: Fixing, body: Fixing, at: Place | None, normal: Direction | None,
+    centre: Place | None, axis: Direction | None, is_disc: bool,
+) -> tuple[Marker, Marker]:  # fmt: skip
+    """Return markers of the surface and of the round body. Raises ModelError."""
+    if isinstance(surface, Marker):
+        i = own_marker(m, what, surface)
+    elif at is None or normal is None:
+        raise ModelError(f"{what} needs at= and normal= of its surface, a place and a direction of the world")
+    else:
+        axes = axes_given(what, normal)
+        i = own_body(m, surface, what).world_marker(np.array(at, float), np.eye(3) if axes is None else axes)
+    if isinstance(body, Marker):
+        j = own_marker(m, what, body)
+    elif centre is None or (is_disc and axis is None):
+        raise ModelError(f"{what} needs centre={', axis=' if is_disc else ''} of the round body in the world")
+    else:
+        middle = np.array(place_given(f"{what}: centre", centre))
+        j = own_body(m, body, what).world_marker(middle, np.eye(3) if axis is None else frame(np.array(axis, float)))
+    refuse_same(what, i, j)
+    return i, j
 
 
 def design_distance(i: Marker, j: Marker) -> float:

@@ -13,6 +13,7 @@ import numpy as np
 from mbsd.base.arguments import finite_number, positive_number
 from mbsd.base.errors import ModelError
 from mbsd.base.names import Named, Suggesting, no_such, shown
+from mbsd.model.event import Event
 from mbsd.spatial.model.body import (
     SHORTEST,
     Body,
@@ -45,11 +46,17 @@ class Model(Suggesting):
     drivers: dict[str, Joint] = field(default_factory=lambda: Named("driver"))
     forces: dict[str, Force] = field(default_factory=lambda: Named("force"))
     contacts: dict[str, Any] = field(default_factory=lambda: Named("contact"))
+    events: dict[str, Event] = field(default_factory=lambda: Named("event"))
     traces: dict[str, Marker] = field(default_factory=lambda: Named("traced point"))
     starts: dict[str, float] = field(default_factory=dict)
     """Turns (rad) and slides (m) of joints at the start, by name."""
     velocities: dict[str, tuple[float, ...]] = field(default_factory=dict)
     """Rates of joints (rad/s or m/s) and angular velocities of bodies (rad/s, in the world) at the start, by name."""
+
+    calls: list[Any] = field(default_factory=list, repr=False)
+    """Calls of the methods that built it (journal.py), by which it is changed and saved."""
+    building: bool = field(default=False, repr=False)
+    """True while one of these methods is at work."""
 
     other_words = MappingProxyType(
         {"hinge": "revolute", "pin": "revolute", "slider": "prismatic", "ball_joint": "spherical", "weld": "fixed"}

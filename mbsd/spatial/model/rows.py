@@ -7,6 +7,7 @@ axes x, y, z of each, arms s, and d from the place of i to that of j:
     dot        a . b                          an axis a of i and an axis b of j
     along      a . d                          an axis a of i
     distance   |d|
+    roll       (height, 0, 0)                 three rows in one: a ball or disc of j on the plane x, y of i
     turn       atan2(y_i . x_j, x_i . x_j)    of j against i about the z axis of i, with its whole turns
 
 mbsd/spatial/equations evaluates them, with J and gamma.
@@ -18,7 +19,7 @@ from dataclasses import dataclass
 
 from mbsd.spatial.model.body import Marker
 
-TERMS = ("point", "dot", "along", "distance", "turn")
+TERMS = ("point", "dot", "along", "distance", "turn", "roll")
 AXES = "xyz"
 
 
@@ -35,6 +36,8 @@ class Term:
     second: str = ""
     """Axis of marker j, of dot."""
     weight: float = 1.0
+    round: tuple[float, float] = (0.0, 0.0)
+    """Radii of ring and tube (m), of roll."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +52,7 @@ class Row:
     @property
     def count(self) -> int:
         """Rows of J."""
-        return 3 if self.terms and self.terms[0].kind == "point" else 1
+        return 3 if self.terms and self.terms[0].kind in ("point", "roll") else 1
 
 
 def point(i: Marker, j: Marker) -> Row:
@@ -75,6 +78,11 @@ def distance(i: Marker, j: Marker, length: float = 0.0) -> Row:
 def turn(i: Marker, j: Marker) -> Row:
     """Return the row that keeps the turn of j against i about the z axis of i (rad)."""
     return Row((Term("turn", i, j),), "rad")
+
+
+def roll(i: Marker, j: Marker, ring: float, tube: float) -> Row:
+    """Return the row, three in J, by which a ball, disc or ring of j rolls on the plane of i."""
+    return Row((Term("roll", i, j, round=(ring, tube)),), "m")
 
 
 def parallel_axes(i: Marker, j: Marker) -> list[Row]:

@@ -23,10 +23,11 @@ import numpy as np
 from mbsd.base.errors import ModelError
 from mbsd.base.names import Suggesting, no_such
 from mbsd.base.quantity import counted
+from mbsd.model.event import Happening
 from mbsd.results.views import DriverView, EnergyView, Mobility, Stats
 from mbsd.spatial.model.body import Marker
 from mbsd.spatial.model.joint import Joint
-from mbsd.spatial.results.forces import ForceView, force_values, force_view
+from mbsd.spatial.results.forces import ForceView, WrenchView, force_values, force_view, wrench_view
 from mbsd.spatial.results.frames import (
     BodyMotion,
     body_motion,
@@ -70,6 +71,8 @@ class Solution(Suggesting):
     """(T,) of drivers since the start (J), of a simulation."""
     changes: tuple[str, ...] = ()
     """Changes of the given start that made a simulation consistent."""
+    events: tuple[Happening, ...] = ()
+    """Events of a simulation, in order."""
     formulation: str = ""
     """Coordinates of a simulation: "reference" or "tree"."""
 
@@ -146,9 +149,11 @@ class Solution(Suggesting):
         effort = -self.lam[:, self.packed.driver_rows + k]
         return DriverView(name, driver.kind.angular, value, rate, acceleration, effort)
 
-    def force(self, name: str) -> ForceView:
-        """Return what a force measures, its effort and power."""
+    def force(self, name: str) -> ForceView | WrenchView:
+        """Return what a force measures, its effort and power; of a function its forces and moments."""
         k = self._index(name, [force.name for force in self.packed.forces], "force")
+        if self.packed.forces[k].call is not None:
+            return wrench_view(self.packed, k, self.motion, self.wanted)
         return force_view(self.packed, k, self._whole, self.wanted)
 
     @cached_property
@@ -163,6 +168,9 @@ class Solution(Suggesting):
             kinetic = kinetic + 0.5 * (system.inertia[b] * spin**2).sum(axis=1)
         potential = -(system.mass[1:] * (poses[..., :3] @ system.gravity)).sum(axis=1)
         for k, force in enumerate(self.packed.forces):
+            if force.call is not None:
+                potential = potential + wrench_view(self.packed, k, self.motion, self.wanted).energy
+                continue
             values, _ = force_values(self.packed, k, self.motion, self.wanted)
             for push, x in zip(force.pushes, values.T, strict=True):
                 potential = potential + 0.5 * push.stiffness * (x - push.free) ** 2

@@ -84,6 +84,10 @@ class TreeCoordinates:
         self._set_rates()
         return dyn
 
+    def check_callbacks(self, accepted: bool) -> None:
+        """Raise what functions of the user raised; see Packed."""
+        self.cut.check_callbacks(accepted)
+
     def nanoseconds(self) -> float:
         """Return about what an evaluation takes on one processor (ns); see docs/decisions/space/formulation.md."""
         tree, rates = self.tree, self.tree.index[:, arrays.COUNT]

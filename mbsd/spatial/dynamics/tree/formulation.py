@@ -70,7 +70,7 @@ def _measure(dyn, ws, q, v, drive):
     """Fill poses, columns, phi and J at coordinates q (3 + nq,), and motions at rates v (3 + nz,)."""
     tree = dyn.tree
     place_tree(tree, dyn.work, q, v, ws)
-    if ws.phi.shape[0] > 0:
+    if ws.phi.shape[0] + dyn.system.call.shape[0] > 0:
         evaluate_rows(dyn.system, dyn.work.pose, drive, ws)
         for n in range(tree.linear.shape[0]):
             row = tree.linear[n, 0]
@@ -88,8 +88,8 @@ def accelerate(dyn, scratch, t, state, a, lam):
     power = 0.0
     for c in range(ws.load.shape[0]):
         ws.load[c] = 0.0
-    if dyn.system.force.shape[0] > 0:
-        power = apply_forces(dyn.system, dyn.laws, t, work.rate, ws, ws.load, dyn.pushed)
+    if dyn.system.force.shape[0] + dyn.system.call.shape[0] > 0:
+        power = apply_forces(dyn.system, dyn.laws, t, work.pose, work.rate, ws, ws.load, dyn.pushed)
     weigh(dyn.tree, work, dyn.system, ws, ws.load)
     factor_tree(dyn.tree, work, dyn.system, ws)
     if dyn.system.held > 0:

@@ -1,0 +1,1 @@
+"""Random mechanisms in space, whose accelerations and reactions an independent Newton-Euler implementation checks."""

@@ -10,6 +10,7 @@ from typing import Literal
 import msgspec
 
 from render.film.framing import CameraPose
+from render.film.poses import Pose
 from render.looks import Look
 from shared.contract.parts import Z
 from shared.contract.signals import Head
@@ -99,7 +100,7 @@ class ArrowSpec(msgspec.Struct, kw_only=True, frozen=True):
 class ArcSpec(msgspec.Struct, kw_only=True, frozen=True):
     """A torque that changes: a curved arrow about its centre.
 
-    The centre is in every State with its sweep (rad). ``colour`` as of an arrow; ``radius`` is that of the arc,
+    The centre is in every State with its sweep (rad) and its axis. ``colour`` as of an arrow; ``radius`` is that of the arc,
     ``shaft`` and ``head`` radii of the tube and its cone, ``point`` the cone's length.
     """
 
@@ -208,15 +209,15 @@ class Scene(msgspec.Struct, kw_only=True, frozen=True):
 
 
 class State(msgspec.Struct, kw_only=True, frozen=True):
-    """The state of one frame: x, y, theta of every body; paths, places, arrows, the camera."""
+    """The state of one frame: poses of all bodies; paths, places, arrows, the camera."""
 
-    bodies: dict[str, Point]
+    bodies: dict[str, Pose]
     trails: list[list[Point]]
     labels: list[Point]
     camera: CameraPose
     tubes: list[list[Point]] = []
     arrows: list[tuple[Point, Point]] = []
-    arcs: list[tuple[Point, float]] = []
+    arcs: list[tuple[Point, float, Point]] = []
     number: str = ""
     """The number that lives, beside the title."""
     lifts: dict[str, float] = {}

@@ -160,12 +160,13 @@ class _Drawing:
         self._add(path, "load", 1.8, 1.4)
 
     def _hatched(self, at: np.ndarray) -> None:
-        below, u = at - np.array([0.0, 1.3 * self.unit]), self.unit
-        self._add(np.array([below - [1.6 * u, 0.0], below + [1.6 * u, 0.0]]), GROUND, 1.0, 1.4)
+        u, right = self.unit, np.array([self.unit, 0.0])
+        below = at - np.array([0.0, 1.3 * u])
+        self._add(np.array([below - 1.6 * right, below + 1.6 * right]), GROUND, 1.0, 1.4)
         self._add(np.array([at, below]), GROUND, 1.0, 1.4)
         for k in range(4):
-            top = below + [(-1.2 + 0.8 * k) * u, 0.0]
-            self._add(np.array([top, top - [0.5 * u, 0.6 * u]]), GROUND, 1.0, 1.0)
+            top = below + (-1.2 + 0.8 * k) * right
+            self._add(np.array([top, top - np.array([0.5 * u, 0.6 * u])]), GROUND, 1.0, 1.0)
 
     def _ring(self, at: np.ndarray, radius: float, ink: str, order: float, fill: str) -> None:
         circle = at + radius * self.unit * np.stack([np.cos(ROUND), np.sin(ROUND)], axis=1)

@@ -13,9 +13,9 @@ class Params:
     radius: float = 0.05
     thickness: float = 0.012
     mass: float = 0.5
-    stem: float = 0.09
+    stem: float = 0.07
     lean: float = 30.0
-    spin: float = 90.0
+    spin: float = 300.0
 
 
 DURATION = 2.0
@@ -29,5 +29,5 @@ def build(p: Params) -> Mechanism:
     top = m.disc("top", centre, axis, p.radius, p.mass, p.thickness)
     m.spherical("tip", m.ground, top, at=(0.0, 0.0, 0.0))
     m.start_moving({"top": tuple(p.spin * part for part in axis)})
-    m.trace("P", top, at=centre)
+    m.trace("P", top, at=tuple(1.25 * part for part in centre))
     return m

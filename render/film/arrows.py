@@ -286,6 +286,10 @@ def _shown_effort(motion: AnyMotion) -> str:
     acting = [
         name
         for name, force in motion.forces.items()
-        if not isinstance(force, ForceMotion3) and motion.drivers and force.drives and force.effort is not None and any(force.effort)
+        if not isinstance(force, ForceMotion3)
+        and motion.drivers
+        and force.drives
+        and force.effort is not None
+        and any(force.effort)
     ]
     return next(iter((*drivers, *acting, *motion.drivers, *motion.points)), "")

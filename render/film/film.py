@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import msgspec
 import numpy as np
@@ -32,7 +32,7 @@ from render.film.tubes.trails import Trails, trails_of
 from render.film.vectors import Torque, Vector, rounding, torques, vectors
 from render.looks import look_of
 from render.presets import ASPECT
-from shared.contract import AnyMotion, Held, Motion3, Parts
+from shared.contract import AnyMotion, Held, Motion, Motion3, Parts
 from shared.contract.shot import Names, Quantity, Shot, refuse_unknown
 
 Array = NDArray[np.float64]
@@ -50,7 +50,10 @@ class Film:
 
         Raises UserError if names, bodies or files do not fit together.
         """
-        self.motion, self.parts, self.shot, self.folder, self.aspect = motion, parts, shot, folder, aspect
+        self.motion: Motion = cast(Motion, motion)
+        """Of a mechanism in space its Motion3, which :attr:`in_space` is then, too: what both have is asked alike."""
+        self.in_space = motion if isinstance(motion, Motion3) else None
+        self.parts, self.shot, self.folder, self.aspect = parts, shot, folder, aspect
         self.poses: Any = SpacePoses(motion, parts) if isinstance(motion, Motion3) else Poses(motion)
         """Poses | SpacePoses, of which a pose, a path and what is carried are asked alike."""
         self.clock = Clock(motion, shot)
@@ -61,10 +64,9 @@ class Film:
         self.space = SweptSpace(self.poses, parts, folder, paths)
         self.trails = Trails(self.poses, self.clock, shot, paths, self.size)
         self.rollers = Rollers(self.poses, parts)
-        in_space = isinstance(motion, Motion3)
         self.heights: Any = (
             SpaceHeights(self.poses, parts.mount.up, self.space.size)
-            if in_space
+            if self.in_space
             else Heights(self.poses, parts, self.space, self.clock)
         )
         """Heights | SpaceHeights"""
@@ -77,7 +79,7 @@ class Film:
         return Scene(
             mechanism=self.motion.mechanism,
             fps=self.shot.fps,
-            pieces=piece_specs(self.parts, self.shot, self.folder, self.motion),
+            pieces=piece_specs(self.parts, self.shot, self.folder, self.in_space or self.motion),
             trails=self.trails.specs(self.look.dark),
             labels=[LabelSpec(text=s.text, size=s.size * self.size, colour=s.colour) for s in self.shot.labels],
             studio=self.studio,
@@ -90,8 +92,9 @@ class Film:
     @cached_property
     def cut(self) -> tuple[Plane, ...]:
         """Planes of the world by which a section cuts springs, ropes and belts."""
-        planar = not isinstance(self.motion, Motion3) and self.drawn
-        return between_bodies(self.parts, self.shot.section, self.folder, self.motion) if planar else ()
+        if self.in_space is not None or not self.drawn:
+            return ()
+        return between_bodies(self.parts, self.shot.section, self.folder, self.motion)
 
     @cached_property
     def studio(self) -> StudioSpec:
@@ -162,20 +165,20 @@ class Film:
     @cached_property
     def arrows(self) -> Arrows:
         """The straight arrows that the shot shows."""
-        return Arrows(self.poses.time, _vectors(self.motion, self.shot.show), self.size)
+        return Arrows(self.poses.time, _vectors(self.in_space or self.motion, self.shot.show), self.size)
 
     @cached_property
     def arcs(self) -> Arcs:
         """The curved ones."""
-        forces = _vectors(self.motion, ("forces", "reactions"))
+        forces = _vectors(self.in_space or self.motion, ("forces", "reactions"))
         least = rounding(forces, self.size)
-        return Arcs(self.poses.time, _torques(self.motion, self.shot.show), self.size, least)
+        return Arcs(self.poses.time, _torques(self.in_space or self.motion, self.shot.show), self.size, least)
 
     @cached_property
     def drawn(self) -> list[Any]:
         """All that is laid anew in every frame."""
-        if isinstance(self.motion, Motion3):
-            return list(coils(self.motion, self.size))
+        if self.in_space is not None:
+            return list(coils(self.in_space, self.size))
         return [*self.stretched, *self.spirals, *self.belts, *self.cables]
 
     @cached_property

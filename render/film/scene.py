@@ -100,8 +100,8 @@ class ArrowSpec(msgspec.Struct, kw_only=True, frozen=True):
 class ArcSpec(msgspec.Struct, kw_only=True, frozen=True):
     """A torque that changes: a curved arrow about its centre.
 
-    The centre is in every State with its sweep (rad) and its axis. ``colour`` as of an arrow; ``radius`` is that of the arc,
-    ``shaft`` and ``head`` radii of the tube and its cone, ``point`` the cone's length.
+    The centre is in every State with its sweep (rad) and its axis. ``colour`` as of an arrow; ``radius`` is that of
+    the arc, ``shaft`` and ``head`` radii of the tube and its cone, ``point`` the cone's length.
     """
 
     name: str

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from render.film.poses import Moment, Pose, Quintic
 from render.film.scene import Point, TubeSpec
 from render.film.tubes.stretched import BROAD, COIL, Path, coil_tubes
-from render.film.vectors import Acting, Torque, Vector
+from render.film.vectors import Torque, Vector
 from shared.contract import Motion3, Parts
 from shared.contract.parts import BodyParts
 from shared.contract.shot import Label, Quantity
@@ -150,9 +150,7 @@ class SpacePoses:
 
     def _columns(self, weights: Quintic.Weights, series: tuple[Array, Array, Array]) -> Array:
         value, rate, bend = series
-        return np.stack(
-            [weights.series(value[:, k], rate[:, k], bend[:, k]) for k in range(value.shape[1])], axis=1
-        )
+        return np.stack([weights.series(value[:, k], rate[:, k], bend[:, k]) for k in range(value.shape[1])], axis=1)
 
 
 def _rates(body: BodyMotion3) -> tuple[tuple[Array, Array, Array], tuple[Array, Array, Array]]:
@@ -181,7 +179,11 @@ class SpaceHeights:
     def words(self, label: Label, at: Moment) -> Point:
         """Return the place of a label of the shot, over its joint or point."""
         points = self.poses.motion.points
-        place = self.poses.path(label.at, np.array([at.time]), 0.0)[0] if label.at in points else self.poses.joint(label.at, at)
+        place = (
+            self.poses.path(label.at, np.array([at.time]), 0.0)[0]
+            if label.at in points
+            else self.poses.joint(label.at, at)
+        )
         x, y, z = (float(value) for value in place + LABEL * self._size * self._up)
         return x, y, z
 
@@ -293,4 +295,3 @@ def _turning(quantity: Quantity, name: str, bodies: tuple[str, ...], joint: Join
     about = moment / np.maximum(size, 1e-300)[:, None]
     about[size == 0.0] = (0.0, 0.0, 1.0)
     return Turning(quantity, name, bodies, columns(joint, "x", "y", "z"), size, about)
-

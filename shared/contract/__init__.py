@@ -1,15 +1,14 @@
 """Files that cross a process, and computations that both sides must share.
 
-data.json (the motion) is motion.py and loads.py, in space space.py, parts.json (the solids) parts.py; base.py is in both. shot.json,
-clearance.json and skeleton.json are files of their own. This module reads, checks and writes the first two.
+data.json (the motion) is motion.py and loads.py, in space space.py, parts.json (the solids) parts.py; base.py is in
+both. shot.json, clearance.json and skeleton.json are files of their own. This module reads, checks and writes the first
+two.
 """
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
-from typing import Any
-
-import msgspec
 
 from shared.contract import consistency
 from shared.contract.base import UNITS, Provenance
@@ -69,6 +68,7 @@ __all__ = [
     "Shape",
     "State",
     "Vibration",
+    "is_in_space",
     "mounted",
     "read_any_motion",
     "read_motion",
@@ -80,12 +80,6 @@ __all__ = [
 
 type AnyMotion = Motion | Motion3
 """Motion of a mechanism in the plane or in space."""
-
-
-class _Header(msgspec.Struct):
-    """Field by which files of mechanisms in space are known."""
-
-    space: Any = None
 
 
 def read_motion(path: Path, mechanism: str | None = None) -> Motion:
@@ -104,16 +98,17 @@ def read_motion(path: Path, mechanism: str | None = None) -> Motion:
 
 def read_any_motion(path: Path, mechanism: str | None = None) -> Motion | Motion3:
     """Read data.json of a mechanism in the plane or in space; raises UserError as :func:`read_motion`."""
-    motion = jsonfile.read(path, Motion3 if _is_in_space(path) else Motion)
+    motion = jsonfile.read(path, Motion3 if is_in_space(path) else Motion)
     _refuse_inconsistent(motion, path)
     _refuse_other_mechanism(motion.mechanism, mechanism, path)
     return completed(motion) if isinstance(motion, Motion) else motion
 
 
-def _is_in_space(path: Path) -> bool:
+def is_in_space(path: Path) -> bool:
+    """Return True for a data.json of a mechanism in space, by its field ``space``, whole or not."""
     try:
-        return msgspec.json.decode(path.read_bytes(), type=_Header).space is not None
-    except (OSError, msgspec.DecodeError, UnicodeDecodeError, RecursionError):
+        return re.search(rb'"space"\s*:\s*[^{\s]', path.read_bytes()) is not None
+    except OSError:
         return False  # the reader says what is wrong
 
 

@@ -114,7 +114,9 @@ def refuse_wrong_mount(mount: Mount, where: str) -> None:
     x, y, z = mount.up
     if mount.kind == "bench":
         if (x, y, z) != (0.0, 0.0, 1.0) and not (z == 0.0 and abs(math.hypot(x, y) - 1.0) < UNIT_TOLERANCE):
-            raise UserError(f"{where}: up is ({x:g}, {y:g}, {z:g}); on a bench it is (0, 0, 1), or a unit vector of x, y")
+            raise UserError(
+                f"{where}: up is ({x:g}, {y:g}, {z:g}); on a bench it is (0, 0, 1), or a unit vector of x, y"
+            )
         return
     if mount.kind == "desk" and (x, y, z) != (0.0, 0.0, 1.0):
         raise UserError(f"{where}: up is ({x:g}, {y:g}, {z:g}); on a desk it is (0, 0, 1)")
@@ -146,7 +148,11 @@ def _bodies_of_loads(motion: Motion) -> list[tuple[str, str]]:
 
 def _bodies_in_space(motion: Motion3) -> list[tuple[str, str]]:
     """Return the fields of forces and drivers in space that name a body, each with that name."""
-    loads = [(f"{field}.{name}.bodies", load) for field in ("drivers", "forces") for name, load in getattr(motion, field).items()]
+    loads = [
+        (f"{field}.{name}.bodies", load)
+        for field in ("drivers", "forces")
+        for name, load in getattr(motion, field).items()
+    ]
     return [(field, body) for field, load in loads for body in load.bodies]
 
 

@@ -65,8 +65,8 @@ def mounted_in_space(mechanism: str, gravity: Vector) -> Mount:
         return Mount(kind="bench")
     if abs(z) > LEVEL * pull:
         raise UserError(
-            f"{mechanism}: gravity pulls along ({-x:g}, {-y:g}, {-z:g}); pictures stand upright where it pulls along -z, "
-            "or along a direction of the x-y plane. Turn the axes of mechanism.py"
+            f"{mechanism}: gravity pulls along ({-x:g}, {-y:g}, {-z:g}); pictures stand upright where it pulls along "
+            "-z, or along a direction of the x-y plane. Turn the axes of mechanism.py"
         )
     flat = math.hypot(x, y)
     return Mount(kind="bench", up=(x / flat, y / flat, 0.0))

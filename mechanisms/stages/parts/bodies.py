@@ -103,21 +103,24 @@ class Measured(NamedTuple):
     """The whole inertia, of a mechanism in space."""
 
 
+PLANAR = Measured()
+
+
 def described_body(
     name: str,
     body: str,
     solids: list[Any],
     files: dict[str, bytes],
     places: tuple[Place, Place] | None,
-    along: Measured = Measured(),
+    along: Measured = PLANAR,
     kept: KeptPieces | None = None,
     done: Callable[[], object] = bool,
     link: tuple[str, str, tuple[float, float, float]] | None = None,
 ) -> BodyParts:
     """Describe a body and add its files to ``files``; ``places`` are those that a rod joins.
 
-    ``link``: joint in space whose massless link it is, with the body and direction of its z axis. Pieces that are ``kept`` are not made
-    again; ``done`` is called after each piece.
+    ``link``: joint in space whose massless link it is, with the body and direction of its z axis. Pieces
+    that are ``kept`` are not made again; ``done`` is called after each piece.
 
     Raises UserError naming the solid that is refused.
     """

@@ -161,7 +161,8 @@ def _tensor(pieces: list[Mass], centre: np.ndarray) -> tuple[float, ...]:
     """Return the whole inertia about a common centre of mass (3,), as :class:`Mass` has it (Steiner)."""
     total = np.zeros((3, 3))
     for piece in pieces:
-        assert piece.tensor is not None and piece.z is not None
+        assert piece.tensor is not None
+        assert piece.z is not None
         xx, yy, zz, xy, xz, yz = piece.tensor
         arm = np.array([*piece.com, piece.z]) - centre
         total += np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])

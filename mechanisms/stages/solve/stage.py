@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 from mechanisms.stages.loading import loading
 from mechanisms.stages.loading.inputs import Inputs, observed, sources_state
 from mechanisms.stages.solve import solving
-from mechanisms.stages.solve.skeleton_file import main_material
+from mechanisms.stages.solve.skeleton_file import body_colours, main_material
 from mechanisms.stages.solve.space.running import is_in_space, summary
 from shared import contract
 from shared.contract.quantity import counted, written
@@ -57,7 +57,8 @@ def run(name: str, parts_are_outdated: bool = False) -> None:
             from mechanisms.stages.solve.space.motion_file import to_motion3
 
             in_space, known = cast(Any, solution), cast(Any, sources)
-            return solution, to_motion3(in_space, parts, "", versions(*PACKAGES), known)
+            inks = body_colours(in_space.mechanism, parts)
+            return solution, to_motion3(in_space, inks, versions(*PACKAGES), known)
         return solution, to_motion(solution, parts, "", versions(*PACKAGES), sources)
 
     (solution, motion), inputs = loading.recorded(name, moved)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
+import cadquery as cq
 import numpy as np
 
 from mechanisms.stages.automatic.space import round as shapes
@@ -18,7 +20,7 @@ STEPS = (0.0, 4.0, 7.0, 11.0, 16.0, 22.0, 30.0, 40.0)
 """How far aside, in rods."""
 POST = 1.15
 """Radius of a post, in rods."""
-NEAR = 1.0
+NEAR = 0.35
 """What moves keeps so far from a post, in rods."""
 BELOW = 2.5
 """The plate lies so far below all that moves, in rods."""
@@ -43,7 +45,8 @@ class Base:
         made: list[Part] = []
         for stand in self.stands:
             posts = [self._post(stand, place) for place in (stand.ends or (stand.place,))]
-            shape, holes = stand.shape(posts[0][0], self.up)
+            aside = posts[0][1]
+            shape, holes = stand.shape(aside / np.linalg.norm(aside) if aside.any() else -self.up)
             made.append((f"stand_{stand.joint}", shape, stand.material, holes))
             for k, (head, aside) in enumerate(posts):
                 made.append((f"post_{stand.joint}_{k + 1}", self._column(stand, head, aside), "aluminium", 0))
@@ -54,24 +57,22 @@ class Base:
         """Return where a post meets the part of a joint, and how far aside (3,) it stands."""
         s, flat = self.sizes, across(self.up)
         side = np.cross(self.up, flat)
-        upright = abs(stand.axis @ self.up) > 0.7 and not stand.ends
+        through = stand.is_bored and abs(stand.axis @ self.up) > 0.7
         for step in STEPS:
             for turn in range(WAYS if step else 1):
                 angle = 2.0 * math.pi * turn / WAYS
                 aside = step * s.rod * (math.cos(angle) * flat + math.sin(angle) * side)
-                if not step and upright and stand.material == "aluminium" and self._is_bore(stand):
+                if stand.is_bored and step and abs(aside @ stand.axis) > 0.5 * step * s.rod:
+                    continue  # along the shaft
+                if not step and through:
                     continue
                 path = [place, place + aside, self._foot(place + aside)]
                 if self._is_clear(path, place, stand.reach):
                     return place, aside
         raise UserError(
-            f"{self.moves.m.name}: no post can hold joint '{stand.joint}' on ground: something passes wherever it could "
-            "stand; write a parts.py that holds it"
+            f"{self.moves.m.name}: no post can hold joint '{stand.joint}' on ground: something passes wherever it "
+            "could stand; write a parts.py that holds it"
         )
-
-    def _is_bore(self, stand: Stand) -> bool:
-        """Return True if a shaft may come out of the part below, where a post would stand."""
-        return stand.reach < 1.15 * self.sizes.cup
 
     def _foot(self, place: Array) -> Array:
         return place + (self.top - place @ self.up) * self.up
@@ -82,7 +83,7 @@ class Base:
             return True
         far = np.linalg.norm(self.cloud - joint, axis=1) - self.reach > reach + 0.5 * self.sizes.rod
         cloud, room = self.cloud[far], self.reach[far] + (POST + NEAR) * self.sizes.rod
-        for a, b in zip(path, path[1:], strict=False):
+        for a, b in pairwise(path):
             if not len(cloud):
                 return True
             way = b - a
@@ -91,7 +92,7 @@ class Base:
                 return False
         return True
 
-    def _column(self, stand: Stand, head: Array, aside: Array) -> object:
+    def _column(self, stand: Stand, head: Array, aside: Array) -> cq.Workplane:
         """Return a post with its foot, up to the part that it holds."""
         s, radius = self.sizes, POST * self.sizes.rod
         foot = self._foot(head + aside)
@@ -107,7 +108,7 @@ class Base:
         solids.append(shapes.rod(start, head + aside, radius))
         return shapes.fused(solids, [])
 
-    def _plate(self, feet: list[Array]) -> object:
+    def _plate(self, feet: list[Array]) -> cq.Workplane:
         """Return the plate, under all posts and most of what moves."""
         s, flat = self.sizes, across(self.up)
         side = np.cross(self.up, flat)
@@ -117,8 +118,6 @@ class Base:
         half = (float(np.ptp(u)) / 2 + room, float(np.ptp(v)) / 2 + room)
         middle = (u.max() + u.min()) / 2 * flat + (v.max() + v.min()) / 2 * side + (self.top - 0.9 * s.rod) * self.up
         made = shapes.box(middle, flat, side, (*half, 0.9 * s.rod))
-        import cadquery as cq
-
         plane = cq.Workplane(obj=made)
         upright = plane.edges(cq.selectors.ParallelDirSelector(cq.Vector(*self.up)))
         return upright.fillet(1.8 * s.rod)

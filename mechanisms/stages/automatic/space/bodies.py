@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import cadquery as cq
 import numpy as np
 
@@ -107,7 +109,12 @@ def _carried(body: Body, nodes: list[Array], sizes: Sizes) -> tuple[list[cq.Shap
         pole = unit(com - nodes[0])
         bob = shapes.ball(com, BOB * sizes.rod, pole)
         return [shapes.ball(com, 1.2 * sizes.rod, pole)], [
-            ("bob", shapes.fused([bob], [shapes.ball(com, 1.2 * sizes.rod, pole), shapes.rod(nodes[0], com, sizes.rod)]), "brass", 0)
+            (
+                "bob",
+                shapes.fused([bob], [shapes.ball(com, 1.2 * sizes.rod, pole), shapes.rod(nodes[0], com, sizes.rod)]),
+                "brass",
+                0,
+            )
         ]
     return [], []
 
@@ -124,4 +131,4 @@ def _rim(body: Body) -> list[Line]:
     z = np.cross(np.eye(3)[0], y)
     turn = np.linspace(0.0, 2.0 * np.pi, 17)
     rim = (MM * shape.radius - half) * (np.outer(np.cos(turn), y) + np.outer(np.sin(turn), z))
-    return [(a, b, half) for a, b in zip(rim, rim[1:], strict=False)]
+    return [(a, b, half) for a, b in pairwise(rim)]

@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import combinations
 
 import cadquery as cq
 import numpy as np
@@ -31,6 +32,8 @@ WIDEST_CUP, WIDEST_RING = math.radians(62.0), math.radians(34.0)
 """Largest swing of a neck in a cup, and of a ball's stud in a ring."""
 NECK = math.radians(24.0)
 """Half of the angle that a neck takes at its ball."""
+LEAVES = 0.45
+"""Cosine to the pin above which a rod leaves an eye by an elbow."""
 COLLAR = 0.35
 """Half width of a collar, in rods."""
 Line = tuple[Array, Array, float]
@@ -60,13 +63,15 @@ class Stand:
     joint: str
     place: Array
     axis: Array
-    shape: Callable[[Array, Array], tuple[cq.Workplane, int]]
-    """Function of where the post arrives and of up: the part, and its through holes."""
+    shape: Callable[[Array], tuple[cq.Workplane, int]]
+    """Function of the direction to the post: the part, and its through holes."""
     reach: float
     """Radius of the part about its place."""
     material: str = "aluminium"
     ends: tuple[Array, ...] = ()
     """Places where posts arrive, if not at ``place``."""
+    is_bored: bool = False
+    """True if a shaft comes out of it at both sides along the axis."""
 
 
 @dataclass
@@ -95,10 +100,21 @@ class Ends:
         for joint in joints:
             for marker in (joint.i, joint.j):
                 self.anchors[marker.body.name][joint.name] = moves.place(marker)
+        self._refuse_meeting_joints()
         places = [moves.world(marker.body.name, moves.place(marker))[:, 0] for j in joints for marker in (j.i, j.j)]
         self.middle = np.mean(np.concatenate(places), axis=0) if places else np.zeros(3)
         for joint in sorted(joints, key=self._is_arm):  # arms lie in the plane of their other ends
             self._shape(joint)
+
+    def _refuse_meeting_joints(self) -> None:
+        for body, anchors in self.anchors.items():
+            for (one, place), (other, another) in combinations(anchors.items(), 2):
+                if body != "ground" and np.linalg.norm(place - another) < self.sizes.rod:
+                    raise UserError(
+                        f"{self.moves.m.name}: joints '{one}' and '{other}' of '{body}' are on one place, where their "
+                        "parts would meet. Move one aside (a hinge or slide acts anywhere along its axis, a slide also "
+                        "beside it), or write a parts.py"
+                    )
 
     # -- joints -------------------------------------------------------------------------------------------------
 
@@ -119,7 +135,7 @@ class Ends:
         if "ground" in joint.bodies:
             self._journal(joint)
             return
-        side = 1.0
+        side = self._nearer_side(joint)
         for marker, way in ((joint.i, 1.0), (joint.j, -1.0)):
             arm = self._side_of_arm(marker)
             if arm:
@@ -128,17 +144,30 @@ class Ends:
         for marker, way in ((joint.i, side), (joint.j, -side)):
             self._eye(joint, marker, way, pinned=marker is joint.i)
 
+    def _nearer_side(self, joint: Joint) -> float:
+        """Return the side along a pin on which the eye of body i stands: that of the rest of its body."""
+        lean = [
+            (self._toward(marker) - self.moves.place(marker)) @ np.array(marker.axis) for marker in (joint.i, joint.j)
+        ]
+        return -1.0 if lean[0] - lean[1] < -0.1 * self.sizes.rod else 1.0
+
     def _eye(self, joint: Joint, marker: Marker, way: float, pinned: bool) -> None:
         s, place, axis = self.sizes, self.moves.place(marker), np.array(marker.axis)
         radius, half = s.eye
         middle = place + way * s.lap * axis
         reach = 2 * half + s.play + 0.3 * s.rod
         end = End(joint.name, middle, [shapes.disc(middle, axis, radius, half)], holes=1)
-        end.cuts = [shapes.disc(place, axis, s.pin + (0.0 if pinned else s.play), 6 * s.rod)]
         end.cuts = [shapes.disc(middle, axis, s.pin + (0.02 if pinned else s.play), half + 0.2 * s.rod)]
         end.lines = [(middle - half * axis, middle + half * axis, radius)]
+        rest = self._toward(marker) - middle
+        if abs(unit(rest) @ axis) > LEAVES:  # past the head of the pin
+            elbow = middle + (radius + 1.2 * s.rod) * across(axis, rest)
+            end.node, end.adds = elbow, [*end.adds, shapes.rod(middle, elbow, s.rod), shapes.ball(elbow, s.rod)]
+            end.lines.append((middle, elbow, s.rod))
         if pinned:
-            heads = [shapes.disc(place + e * (reach + 0.2 * s.rod) * axis, axis, 1.35 * s.pin, 0.25 * s.rod) for e in (1, -1)]
+            heads = [
+                shapes.disc(place + e * (reach + 0.2 * s.rod) * axis, axis, 1.35 * s.pin, 0.25 * s.rod) for e in (1, -1)
+            ]
             pin = shapes.fused([shapes.disc(place, axis, s.pin, reach), *heads], [])
             end.parts.append(("pin", pin, "steel", 0))
         self.ends[marker.body.name].append(end)
@@ -177,18 +206,11 @@ class Ends:
     def _block(self, joint: str, place: Array, axis: Array, bore: float) -> None:
         s, outer = self.sizes, bore + self.sizes.wall
 
-        def shape(post: Array, up: Array) -> tuple[cq.Workplane, int]:
-            way = place - post
-            solids = [shapes.disc(place, axis, outer, s.block)]
-            aside = way - (way @ axis) * axis
-            if np.linalg.norm(aside) > outer:
-                along = unit(aside)
-                side = np.cross(axis, along)
-                half = float(np.linalg.norm(aside)) / 2
-                solids.append(shapes.box(place - half * along, along, side, (half, outer, 0.8 * s.block)))
-            return shapes.fused(solids, [shapes.disc(place, axis, bore, s.block + s.rod)]), 1
+        def shape(way: Array) -> tuple[cq.Workplane, int]:
+            bored = shapes.disc(place, axis, bore, s.block + s.rod)
+            return shapes.fused([shapes.disc(place, axis, outer, s.block)], [bored]), 1
 
-        self.stands.append(Stand(joint, place, axis, shape, outer))
+        self.stands.append(Stand(joint, place, axis, shape, outer, is_bored=True))
 
     def _sliding(self, joint: Joint) -> None:
         """Shape a shaft in a block of ground, or a bush on a rail."""
@@ -203,24 +225,42 @@ class Ends:
         half = 1.3 * s.block
         seen = self.moves.seen(rail.body.name, self.moves.world(bush.body.name, self.moves.place(bush))[:, 0])
         way = (seen - place) @ axis
-        low, high = float(way.min()) - half - 1.5 * s.rod, float(way.max()) + half + 1.5 * s.rod
+        low, high = float(way.min()) - half - 3.4 * s.rod, float(way.max()) + half + 3.4 * s.rod
         start, stop = place + low * axis, place + high * axis
         side = np.array(rail.across)
         width = self._shaft_radius(rail) if self._runs_along(rail) else s.rod
-        solid = shapes.box((start + stop) / 2, axis, side, ((high - low) / 2, width, width)) if square else shapes.rod(start, stop, width)
+        solid = (
+            shapes.box((start + stop) / 2, axis, side, ((high - low) / 2, width, width))
+            if square
+            else shapes.rod(start, stop, width)
+        )
         self._bush(joint, bush, half, width, square)
         if rail.body.name != "ground":
             nodes = self._others(rail)
-            node = min((start, stop), key=lambda end: float(np.linalg.norm(end - np.mean(nodes, axis=0)))) if nodes else start
+            node = (
+                min((start, stop), key=lambda end: float(np.linalg.norm(end - np.mean(nodes, axis=0))))
+                if nodes
+                else start
+            )
             node = place if self._runs_along(rail) else node
             self.ends[rail.body.name].append(End(joint.name, node, [solid], lines=[(start, stop, width)]))
             return
-        holder = 0.9 * s.rod
+        holder = 1.2 * s.rod
 
-        def shape(post: Array, up: Array) -> tuple[cq.Workplane, int]:
+        def shape(way: Array) -> tuple[cq.Workplane, int]:
             return shapes.fused([solid], []), 0
 
-        self.stands.append(Stand(joint.name, (start + stop) / 2, axis, shape, width, "steel", (start + holder * axis, stop - holder * axis)))
+        self.stands.append(
+            Stand(
+                joint.name,
+                (start + stop) / 2,
+                axis,
+                shape,
+                width,
+                "steel",
+                (start + holder * axis, stop - holder * axis),
+            )
+        )
 
     def _bush(self, joint: Joint, marker: Marker, half: float, width: float, square: bool) -> None:
         s, place, axis = self.sizes, self.moves.place(marker), np.array(marker.axis)
@@ -228,8 +268,12 @@ class Ends:
         end = End(joint.name, place, [shapes.disc(place, axis, outer, half)], holes=1)
         gap = width + s.play
         side = np.array(marker.across)
-        end.cuts = [shapes.box(place, axis, side, (half + s.rod, gap, gap)) if square else shapes.disc(place, axis, gap, half + s.rod)]
-        end.lines = [(place - half * axis, place + half * axis, outer)]
+        end.cuts = [
+            shapes.box(place, axis, side, (half + s.rod, gap, gap))
+            if square
+            else shapes.disc(place, axis, gap, half + s.rod)
+        ]
+        end.lines = tube_lines(place, axis, outer, half)
         self.ends[marker.body.name].append(end)
 
     def _universal(self, joint: Joint) -> None:
@@ -257,8 +301,8 @@ class Ends:
     ) -> None:
         s, place, axis = self.sizes, MM * np.array(marker.place), np.array(marker.axis)
 
-        def shape(post: Array, up: Array) -> tuple[cq.Workplane, int]:
-            back = across(axis, post - place)
+        def shape(way: Array) -> tuple[cq.Workplane, int]:
+            back = across(axis, way)
             solids = shapes.yoke(place, axis, back, inner, wall, width, depth, bridge)
             return shapes.fused(solids, [shapes.disc(place, axis, 0.75 * s.rod + s.play, inner + 2 * wall)]), 2
 
@@ -269,7 +313,9 @@ class Ends:
         choices = []
         for ball, cup in ((joint.i, joint.j), (joint.j, joint.i)):
             if ball.body.name != "ground":
-                neck = unit(self._toward(ball) - self.moves.place(ball)) if self._has_rest(ball) else np.array([0, 0, 1.0])
+                neck = (
+                    unit(self._toward(ball) - self.moves.place(ball)) if self._has_rest(ball) else np.array([0, 0, 1.0])
+                )
                 opening, swing = self._swing(cup.body.name, self.moves.turned(ball.body.name, neck))
                 choices.append((swing, ball, cup, neck, opening))
         swing, ball, cup, neck, opening = min(choices, key=lambda choice: choice[0])
@@ -289,22 +335,23 @@ class Ends:
     def _cup(self, joint: Joint, marker: Marker, opening: Array, swing: float) -> None:
         if swing > WIDEST_CUP:
             raise UserError(
-                f"{self.moves.m.name}: joint '{joint.name}' swings by {math.degrees(swing):.0f} degrees to both sides in "
-                f"'{marker.body.name}', too far for a ball in a cup ({math.degrees(WIDEST_CUP):.0f}); write a parts.py"
+                f"{self.moves.m.name}: joint '{joint.name}' swings by {math.degrees(swing):.0f} degrees to both sides "
+                f"in '{marker.body.name}', too far for a ball in a cup ({math.degrees(WIDEST_CUP):.0f}); write a "
+                "parts.py"
             )
         s, place = self.sizes, self.moves.place(marker)
         rim = s.ball * min(0.3, math.cos(swing + NECK + math.radians(8.0)))
         if marker.body.name == "ground":
 
-            def shape(post: Array, up: Array) -> tuple[cq.Workplane, int]:
-                back = unit(post - place)
-                cup = [shapes.ball(place, s.cup, opening), shapes.rod(place + 0.5 * s.cup * back, place + 1.25 * s.cup * back, 0.9 * s.ball)]
-                return shapes.fused(cup, self._hollow(place, opening, rim)), 0
+            def shape(way: Array) -> tuple[cq.Workplane, int]:
+                return shapes.fused([shapes.ball(place, s.cup, opening)], self._hollow(place, opening, rim)), 0
 
-            self.stands.append(Stand(joint.name, place, opening, shape, 1.2 * s.cup))
+            self.stands.append(Stand(joint.name, place, opening, shape, s.cup))
             return
         back = place - (s.cup + 0.6 * s.rod) * opening
-        end = End(joint.name, back, [shapes.ball(place, s.cup, opening), shapes.rod(place - s.ball * opening, back, s.rod)])
+        end = End(
+            joint.name, back, [shapes.ball(place, s.cup, opening), shapes.rod(place - s.ball * opening, back, s.rod)]
+        )
         end.cuts = self._hollow(place, opening, rim)
         end.lines = [(place, back, s.cup)]
         rest = self._toward(marker) - place if self._has_rest(marker) else -opening
@@ -347,8 +394,9 @@ class Ends:
                 stud, upright = self._stud(joint, marker, sense * way)
                 holder = marker
                 self.ends[marker.body.name].append(stud)
-                solids.append(shapes.disc(ends[k], z, s.cup, 1.15 * s.rod))
-                cuts.append(shapes.ball(ends[k], s.ball + s.play, z))
+                ball, ring, half, _ = s.ring
+                solids.append(shapes.disc(ends[k], z, ring, half))
+                cuts.append(shapes.ball(ends[k], ball + s.play, z))
                 holes += 1
             else:
                 self._cup(joint, marker, opening, swing)
@@ -363,13 +411,15 @@ class Ends:
         axis, lean = stud_axis(self.moves, marker, way)
         if lean > WIDEST_RING:
             raise UserError(
-                f"{self.moves.m.name}: the rod '{joint.name}' swings too far at '{marker.body.name}' for a ball in a cup, "
-                f"and leans by {math.degrees(lean):.0f} degrees in a ring ({math.degrees(WIDEST_RING):.0f}); write a parts.py"
+                f"{self.moves.m.name}: the rod '{joint.name}' swings too far at '{marker.body.name}' for a ball in a "
+                f"cup, and leans by {math.degrees(lean):.0f} degrees in a ring ({math.degrees(WIDEST_RING):.0f}); "
+                "write a parts.py"
             )
         arm = self._side_of_arm(marker, axis)
         side = arm or (1.0 if axis @ (self._toward(marker) - place) >= 0.0 else -1.0)
-        foot = place + side * 3.6 * s.rod * axis
-        end = End(joint.name, foot, [shapes.ball(place, s.ball, axis), shapes.rod(place, foot, 0.75 * s.rod)])
+        ball, ring, half, stud = s.ring
+        foot = place + side * (ring * math.sin(WIDEST_RING) + half + s.eye[1] + 0.2 * s.rod) * axis
+        end = End(joint.name, foot, [shapes.ball(place, ball, axis), shapes.rod(place, foot, stud)])
         end.adds.append(shapes.disc(foot, axis, 1.35 * s.rod, s.eye[1]))
         end.lines = [(place, foot, s.ball)]
         return end, axis
@@ -387,7 +437,11 @@ class Ends:
         near = [p for p in self.anchors[body.name].values() if np.linalg.norm(p - own) > 0.5 * self.sizes.rod]
         shape = body.shape
         if shape is not None and shape.kind == "rod":
-            near += [p for p in (np.zeros(3), np.array([MM * shape.length, 0.0, 0.0])) if np.linalg.norm(p - own) > self.sizes.rod]
+            near += [
+                p
+                for p in (np.zeros(3), np.array([MM * shape.length, 0.0, 0.0]))
+                if np.linalg.norm(p - own) > self.sizes.rod
+            ]
         elif shape is not None and np.linalg.norm(own) > self.sizes.rod:
             near.append(np.zeros(3))
         elif not near and np.linalg.norm(MM * np.array(body.com) - own) > self.sizes.rod:
@@ -433,6 +487,15 @@ class Ends:
         shape = marker.body.shape
         along = shape is not None and shape.kind == "rod" and abs(marker.axis[0]) > AXIAL
         return MM * shape.radius if along and shape is not None and shape.radius > 0.0 else self.sizes.rod
+
+
+def tube_lines(middle: Array, axis: Array, radius: float, half: float) -> list[Line]:
+    """Return thin lines on a cylinder, which end where it ends."""
+    x = across(axis)
+    y, thin = np.cross(axis, x), 0.25 * radius
+    turn = np.linspace(0.0, 2.0 * math.pi, 9)[:-1]
+    rim = middle + (radius - thin) * (np.outer(np.cos(turn), x) + np.outer(np.sin(turn), y))
+    return [(place - (half - thin) * axis, place + (half - thin) * axis, thin) for place in rim]
 
 
 def stud_axis(moves: Moves, marker: Marker, way: Array) -> tuple[Array, float]:

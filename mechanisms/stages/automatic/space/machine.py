@@ -67,12 +67,11 @@ def link_poses(moves: Moves, link: Link) -> tuple[Array, Array]:
 
 
 def _materials(m: Any) -> dict[str, str]:
-    """Return the material of each moving body: steel of shafts, else by its role."""
+    """Return the material of each moving body: by its role."""
     from mbsd.drawing.look import colours_by_role
 
     words = colours_by_role(m)
-    out = {body: LINK if word == "silver" else f"{LINK}_{word}" for body, word in words.items()}
-    return out
+    return {body: LINK if word == "silver" else f"{LINK}_{word}" for body, word in words.items()}
 
 
 def _solids(body: str, parts: list[Part], used: set[str]) -> list[Solid]:
@@ -89,4 +88,3 @@ def _solids(body: str, parts: list[Part], used: set[str]) -> list[Solid]:
         used.add(free)
         out.append(Solid(free, shape, material, holes, fitted=True))
     return out
-

@@ -54,6 +54,11 @@ class Sizes:
         return 1.75 * self.rod
 
     @property
+    def ring(self) -> tuple[float, float, float, float]:
+        """Radius of a ball on a stud, outer radius and half width of the ring round it, and radius of the stud."""
+        return 2.15 * self.rod, 3.0 * self.rod, 1.0 * self.rod, 0.7 * self.rod
+
+    @property
     def cup(self) -> float:
         """Outer radius of the cup round it."""
         return 2.6 * self.rod
@@ -119,13 +124,22 @@ class Moves:
             elif name != "ground":
                 places[name].append(MM * np.array(body.com))
         everything = np.concatenate(
-            [self.world(name, np.array(own)).reshape(-1, 3) for name, own in places.items() if own and name in self.poses]
+            [
+                self.world(name, np.array(own)).reshape(-1, 3)
+                for name, own in places.items()
+                if own and name in self.poses
+            ]
         )
         whole = float(np.linalg.norm(np.ptp(everything, axis=0)))
         links = [
-            float(np.linalg.norm(a - b)) for name, own in places.items() if name != "ground" for a, b in combinations(own, 2)
+            float(np.linalg.norm(a - b))
+            for name, own in places.items()
+            if name != "ground"
+            for a, b in combinations(own, 2)
         ]
         links = [length for length in links if length > 0.02 * whole]
         if whole == 0.0:
-            raise UserError(f"{self.m.name}: all joints and centres of mass are on one place, so there is nothing to shape")
+            raise UserError(
+                f"{self.m.name}: all joints and centres of mass are on one place, so there is nothing to shape"
+            )
         return min(max(OF_LINK * min(links, default=whole), OF_WHOLE * whole), THICKEST * whole)

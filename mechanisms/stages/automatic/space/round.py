@@ -13,13 +13,18 @@ Array = NDArray[np.float64]
 
 
 def unit(vector: Array) -> Array:
-    """Return a vector at length 1."""
-    return vector / np.linalg.norm(vector)
+    """Return a vector at length 1; raises ValueError for one without a length, of which a kernel would make no end."""
+    length = float(np.linalg.norm(vector))
+    if not length > 0.0:
+        raise ValueError("a direction has no length")
+    return vector / length
 
 
 def across(axis: Array, near: Array | None = None) -> Array:
     """Return a unit vector normal to a unit ``axis``, as near to ``near`` as can be."""
-    for start in ([] if near is None else [near]) + list(np.eye(3)[np.argsort(np.abs(np.round(axis, 9)), kind="stable")]):
+    for start in ([] if near is None else [near]) + list(
+        np.eye(3)[np.argsort(np.abs(np.round(axis, 9)), kind="stable")]
+    ):
         normal = start - (start @ axis) * axis
         if np.linalg.norm(normal) > 1e-6 * max(1.0, float(np.linalg.norm(start))):
             return unit(normal)

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from mechanisms.stages.solve.skeleton_file import body_colours
 from shared import contract
 from shared.contract import space
 
@@ -23,20 +22,23 @@ Sources = Mapping[str, Literal["mechanism", "parts"]]
 
 
 def to_motion3(
-    solution: Solution, parts: contract.Parts | None, inputs: str, packages: dict[str, str], sources: Sources
+    solution: Solution, inks: Mapping[str, str], packages: dict[str, str], sources: Sources
 ) -> contract.Motion3:
-    """Return the solution as the contract has it; ``sources`` says where the mass of each body is from."""
+    """Return the solution as the contract has it, its inputs to be filled in.
+
+    ``inks`` are the colours of bodies, ``sources`` says where the mass of each is from.
+    """
     import mbsd
 
     m, energy = solution.mechanism, solution.energy
     return contract.Motion3(
         mechanism=m.name,
-        provenance=contract.Provenance(inputs=inputs, versions=packages | {"mbsd": mbsd.__version__}),
+        provenance=contract.Provenance(inputs="", versions=packages | {"mbsd": mbsd.__version__}),
         gravity=_triple(m.gravity),
         analysis="sweep" if solution.work is None else "simulation",
         period=solution.period,
         time=solution.t.tolist(),
-        bodies=_bodies(solution, m, parts, sources),
+        bodies=_bodies(solution, m, inks, sources),
         joints={name: _joint(solution, joint) for name, joint in m.joints.items()},
         drivers={name: _driver(solution, driver) for name, driver in m.drivers.items()},
         points={name: _point(solution, name, marker.body.name) for name, marker in m.traces.items()},
@@ -60,12 +62,10 @@ def to_motion3(
 
 
 def _bodies(
-    solution: Solution, m: Mechanism, parts: contract.Parts | None, sources: Sources
+    solution: Solution, m: Mechanism, inks: Mapping[str, str], sources: Sources
 ) -> dict[str, space.BodyMotion3]:
     from mbsd.drawing.look import on_dark
 
-    same_fields: Any = m
-    inks = body_colours(same_fields, parts)
     out = {}
     for name, body in m.bodies.items():
         if name == "ground":

@@ -114,7 +114,9 @@ def summary(solution: Solution) -> list[str]:
     said = []
     for name, driver in efforts.items():
         peak, size = float(np.abs(driver.effort).max()), solution.packed.size if driver.angular else 1.0
-        said.append(f"{name} up to {written(peak if peak > rounding * size else 0.0, 'N m' if driver.angular else 'N')}")
+        said.append(
+            f"{name} up to {written(peak if peak > rounding * size else 0.0, 'N m' if driver.angular else 'N')}"
+        )
     if solution.energy is not None and solution.work is not None and not efforts:
         total = solution.energy.total
         said.append(f"energy within {written(float(np.ptp(total)), 'J')} of {written(float(total[0]), 'J')}")

@@ -352,7 +352,7 @@ LARGE = 0.8
 class Family:
     """Facts that decide the look: stand, gas or motor drive, the diagonal of its sweep (m)."""
 
-    mount: Kind
+    mount: Kind | Literal["bench"]
     engine: bool
     driven: bool
     size: float

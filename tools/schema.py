@@ -7,7 +7,7 @@ from pathlib import Path
 
 import msgspec
 
-from shared.contract import Motion, Parts
+from shared.contract import Motion, Motion3, Parts
 from shared.contract.clearance import Clearance
 from shared.contract.shot import Shot
 from shared.contract.skeleton import Skeleton
@@ -17,6 +17,7 @@ from shared.stage.paths import ROOT
 FOLDER = ROOT / "docs" / "schema"
 PUBLISHED: dict[str, type[msgspec.Struct]] = {
     "motion": Motion,
+    "motion3": Motion3,
     "parts": Parts,
     "clearance": Clearance,
     "shot": Shot,

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.film.clock import Clock
-from render.film.scene import ArcSpec, ArrowSpec, LegendRow, Point
+from render.film.scene import ArcSpec, ArrowSpec, LegendRow, Point, across_axes
 from render.film.vectors import LONGEST, TINY, UNIT, Torque, Vector, at_time, lifted, scales_of
 from shared.contract import AnyMotion
 from shared.contract.quantity import figures, live, written
@@ -123,8 +123,6 @@ RADIUS, APART = 0.066, 0.022
 WORDS = {"forces": "torques", "reactions": "torques of joints"}
 SIGNAL = {"forces": "torques", "reactions": "reactions"}
 """Whose colour they have."""
-STEEP = 0.98
-"""Cosine to the y axis above which an axis takes the x axis for its plane."""
 STOUT = 1.3
 """Thickness of an arc in that of an arrow: it stands on parts, not beside them."""
 
@@ -211,18 +209,6 @@ class Arcs:
         if self.scale is None:
             return np.zeros(len(values))
         return FULL_TURN * np.clip(values / self.scale.largest, -LONGEST, LONGEST)
-
-
-def across_axes(axes: Array) -> tuple[Array, Array]:
-    """Return x and y axes (n, 3) of planes normal to unit vectors (n, 3): of z those of the world.
-
-    The y axis points away from a camera in front, as far as it can.
-    """
-    away = np.array([0.0, 1.0, 0.0]) - axes[:, 1, None] * axes
-    steep = np.abs(axes[:, 1]) > STEEP
-    away[steep] = np.array([1.0, 0.0, 0.0]) - axes[steep, 0, None] * axes[steep]
-    y = away / np.linalg.norm(away, axis=1, keepdims=True)
-    return np.cross(y, axes), y
 
 
 # Text over the picture: a title, the rate of time, a number that follows the motion.

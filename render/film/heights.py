@@ -51,8 +51,13 @@ class SweptSpace:
 
     @cached_property
     def machine(self) -> Array:
-        """Return the points that move, without trails; all points if nothing moves."""
+        """Return the points that move, without trails; all points if nothing moves.
+
+        In space the posts that hold joints belong to it, all of ground but its plate.
+        """
         bodies = [cloud for name, cloud in self._bodies.items() if name != "ground"]
+        if bodies and isinstance(self._poses, SpacePoses):
+            bodies += self._outlines.get("ground", [])[1:]
         return np.concatenate(bodies) if bodies else self.all
 
     @cached_property

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from render.film.scene import Pose
 from render.film.solids import swept
 from shared.contract import BodyMotion, Motion
 
@@ -96,10 +97,6 @@ class Quintic:
             )
 
 
-type Pose = tuple[float, float, float, float, float, float, float]
-"""x, y, z (m) of a body's frame, and its unit quaternion (w, x, y, z) from body to world."""
-
-
 def planar_pose(x: float, y: float, theta: float) -> Pose:
     """Return the pose of a body that has turned by the unwrapped angle ``theta`` (rad) in the plane."""
     return x, y, 0.0, math.cos(theta / 2), 0.0, 0.0, math.sin(theta / 2)
@@ -147,8 +144,11 @@ class Poses:
         return x, y, theta + math.tau * whole * at.turns
 
     def pose(self, name: str, at: Moment) -> Pose:
-        """Return the pose of a body's frame in space; one that never moves is at the origin."""
-        return planar_pose(*self.body(name, at))
+        """Return the pose of a body's frame in space; one that never moves is at the origin.
+
+        It is the same in every period, as pictures are.
+        """
+        return planar_pose(*self.body(name, Moment(at.time, 0)))
 
     def carried(self, name: str, points: Array, times: Array) -> Array:
         """Return all places (m * n, 3) of points (n, 3) of a body at times (m,)."""

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from render.film.poses import Moment, Pose, Quintic
-from render.film.scene import Point, TubeSpec
+from render.film.poses import Moment, Quintic
+from render.film.scene import Point, Pose, TubeSpec
 from render.film.tubes.stretched import BROAD, COIL, Path, coil_tubes
 from render.film.vectors import Torque, Vector
 from shared.contract import Motion3, Parts
@@ -86,11 +86,11 @@ class SpacePoses:
         return place, q / np.linalg.norm(q, axis=1, keepdims=True)
 
     def pose(self, name: str, at: Moment) -> Pose:
-        """Return x, y, z (m) and the quaternion w, x, y, z of a body's frame; what never moves is at the origin."""
+        """Return x, y, z (m) and the quaternion w, x, y, z of a body's frame; what never moves is at the origin.
+
+        It is the same in every period, as pictures are; Blender chooses signs that go on.
+        """
         place, q = self.over(name, np.array([at.time]))
-        if name in self._rates and at.turns % 2 and self.motion.period is not None:
-            ends = self.motion.bodies[name].quaternion
-            q = q * (1.0 if ends[0] @ ends[-1] > 0.0 else -1.0)
         x, y, z, w, i, j, k = (float(value) for value in (*place[0], *q[0]))
         return x, y, z, w, i, j, k
 

@@ -16,7 +16,8 @@ from shared.stage.errors import UserError
 
 
 type Vector = tuple[float, float, float]
-Kind = Literal["desk", "stand", "wall", "ground", "bench"]
+Kind = Literal["desk", "stand", "wall", "ground"]
+"""How an author may have a mechanism in the plane stand."""
 Z: Vector = (0.0, 0.0, 1.0)
 Y: Vector = (0.0, 1.0, 0.0)
 LEVEL = 1e-9
@@ -32,7 +33,7 @@ class Mount(msgspec.Struct, forbid_unknown_fields=True, kw_only=True, frozen=Tru
     space stands with its base on a bench, ``up`` against gravity.
     """
 
-    kind: Kind = "desk"
+    kind: Literal["desk", "stand", "wall", "ground", "bench"] = "desk"
     up: Vector = Z
     """Unit vector of the world."""
 

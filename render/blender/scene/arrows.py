@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from render.blender.scene.materials import Graph
-from render.film.arrows import across_axes
-from render.film.scene import ArcSpec, ArrowSpec, Colour, Point
+from render.film.scene import ArcSpec, ArrowSpec, Colour, Point, across_axes
 from shared.contract.parts import Z
 
 # Arrows: a thin shaft and a cone on an empty that moves and turns them, and a ball where it begins; their lengths are

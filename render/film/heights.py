@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterable
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,8 +32,11 @@ SAMPLES, MOST = 120, 1200
 class SweptSpace:
     """Points (n, 3) in m around everything that is seen, over the whole motion."""
 
-    def __init__(self, poses: Poses | SpacePoses, parts: Parts, folder: Path, paths: dict[str, float]) -> None:
-        """``folder`` holds the STL files; ``paths`` has the height of each traced point that leaves a trail."""
+    def __init__(self, poses: Any, parts: Parts, folder: Path, paths: dict[str, float]) -> None:
+        """``poses`` are Poses or SpacePoses, ``folder`` holds the STL files.
+
+        ``paths`` has the height of each traced point that leaves a trail.
+        """
         self._poses, self._paths = poses, paths
         self._files = {
             body: [folder / piece.stl for piece in solids.pieces.values()] for body, solids in parts.bodies.items()

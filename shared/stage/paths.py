@@ -201,8 +201,13 @@ def mechanism_names() -> list[str]:
 
 
 def planar_names() -> list[str]:
-    """Return the mechanisms whose mechanism.py does not import mbsd.spatial, read without running it."""
-    return [name for name in mechanism_names() if not imports_space(mechanism_file(name))]
+    """Return the mechanisms in the plane: pages, sites and some tests have no others yet."""
+    return planar_among(mechanism_names())
+
+
+def planar_among(names: Iterable[str]) -> list[str]:
+    """Return those of some mechanisms whose mechanism.py does not import mbsd.spatial, read without running it."""
+    return [name for name in names if not imports_space(mechanism_file(name))]
 
 
 def imports_space(file: Path) -> bool:

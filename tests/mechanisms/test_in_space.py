@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mbsd.spatial import Mechanism
+from mbsd.spatial import Mechanism, constant_rate
 from mbsd.spatial.model.rotation import rotation_matrix
 from mechanisms.heavy_top import mechanism as top
 from mechanisms.rssr import mechanism as rssr
@@ -178,6 +178,20 @@ def test_a_ball_that_swings_all_round_raises_an_error_that_names_its_joint() -> 
     m.start_moving({"arm": (0.0, 0.0, 40.0)})
     with pytest.raises(UserError, match=r"joint 'ball' swings by 1.. degrees to both sides"):
         solids_in_space(m.simulate(duration=0.4, steps=48))
+
+
+def test_bodies_that_would_meet_raise_an_error_that_names_them_and_the_time() -> None:
+    """What a crank carries at its tip sweeps through the shaft of another body."""
+    m = Mechanism("crossed")
+    one, other = m.body("one"), m.shaft("other", (0.05, -0.2, 0.0), (0.05, 0.2, 0.0), 0.004)
+    m.revolute("hinge", m.ground, one, at=(0, 0, -0.1), axis=(0, 1, 0))
+    m.body("end")
+    m.revolute("tip", one, "end", at=(0, 0, 0.05), axis=(0, 1, 0))
+    m.revolute("bearing", m.ground, other, at=(0.05, 0.19, 0), axis=(0, 1, 0))
+    for driver, joint in (("a", "hinge"), ("b", "bearing"), ("c", "tip")):
+        m.drive_turn(driver, joint, constant_rate(2 * math.pi))
+    with pytest.raises(UserError, match=r"parts of 'other' and 'end' would meet at t = 0\.\d+ s, by"):
+        solids_in_space(m.sweep(duration=1.0, steps=72))
 
 
 def test_orientation_of_a_link_is_a_rotation_whose_x_axis_is_the_rod() -> None:

@@ -67,7 +67,8 @@ def mount_of(name: str, bodies: Any, wish: Kind | None) -> Mount:
     Raises UserError for one that parts() says and that cannot be.
     """
     if getattr(bodies, "mount", None) is None and getattr(bodies, "space", False):
-        return mounted_in_space(name, model_of(name)[0].gravity)
+        in_space: Any = model_of(name)[0]
+        return mounted_in_space(name, in_space.gravity)
     if follows_gravity(bodies, wish):
         return mounted(model_of(name)[0].gravity or (0.0, 0.0), wish)
     said = getattr(bodies, "mount", None)

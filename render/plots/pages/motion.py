@@ -333,7 +333,7 @@ def _curves(axes: Axes, motion: Motion, skeleton: Skeleton, labels: Labels) -> N
         labels.avoid_lines(list(zip(point.x, point.y, strict=True)))
 
 
-def _ink(role: str, motion: Motion) -> str:
+def _ink(role: str, motion: AnyMotion) -> str:
     """Return the colour of a role of skeleton.json on this page; a body has that of its other plots."""
     body = role.removeprefix("body:")
     if body != role and body in motion.bodies:

@@ -124,7 +124,8 @@ class Base:
 
     def _swept(self, lines: dict[str, list[Line]]) -> tuple[Array, Array]:
         """Return points (n, 3) in moving parts over the motion, and the radii (n,) about them (mm)."""
-        clouds, radii = [np.zeros((0, 3))], [np.zeros(0)]
+        clouds: list[Array] = [np.zeros((0, 3))]
+        radii: list[Array] = [np.zeros(0)]
         for body, own in lines.items():
             for a, b, radius in own:
                 count = max(2, math.ceil(float(np.linalg.norm(b - a)) / (FINE * self.sizes.rod)) + 1)

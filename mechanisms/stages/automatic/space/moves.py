@@ -79,7 +79,7 @@ class Moves:
 
     def __init__(self, m: Mechanism, solution: Solution) -> None:
         self.m, self.solution = m, solution
-        rows = np.unique(np.linspace(0, len(solution.t) - 1, POSES).round().astype(int))
+        rows = self.rows = np.unique(np.linspace(0, len(solution.t) - 1, POSES).round().astype(int))
         rest = np.tile(np.eye(3), (len(rows), 1, 1))
         self.poses: dict[str, tuple[Array, Array]] = {"ground": (np.zeros((len(rows), 3)), rest)}
         for name in m.bodies:

@@ -57,13 +57,6 @@ def box(middle: Array, x: Array, y: Array, halves: tuple[float, float, float]) -
     return made.val()  # pyright: ignore[reportReturnType]
 
 
-def cut_ball(middle: Array, outer: float, inner: float, opening: Array, rim: float) -> cq.Shape:
-    """Return a hollow sphere that is open where a place lies more than ``rim`` along ``opening``."""
-    reach = 2.0 * outer
-    away = box(middle + (rim + reach) * opening, across(opening), np.cross(opening, across(opening)), (reach,) * 3)
-    return ball(middle, outer, opening).cut(ball(middle, inner, opening)).cut(away)
-
-
 def yoke(
     middle: Array, axis: Array, back: Array, inner: float, wall: float, width: float, depth: float, bridge: float
 ) -> list[cq.Shape]:

@@ -81,7 +81,7 @@ def _bodies(
             mass=body.mass,
             mass_from=sources[name],
             com=_triple(body.com),
-            inertia=tuple(float(inertia[i, j]) for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))),
+            inertia=_six(inertia),
             colour=inks[name],
             colour_on_dark=on_dark(inks[name]),
         )
@@ -158,6 +158,12 @@ def _marker(marker: Marker) -> space.Marker3:
 def _triple(values: Any) -> tuple[float, float, float]:
     x, y, z = (float(value) + 0.0 for value in values)  # -0 becomes 0
     return x, y, z
+
+
+def _six(inertia: np.ndarray) -> tuple[float, float, float, float, float, float]:
+    """Return xx, yy, zz, xy, xz, yz of a matrix (3, 3)."""
+    xx, yy, zz, xy, xz, yz = (float(inertia[i, j]) for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))
+    return xx, yy, zz, xy, xz, yz
 
 
 def _columns(names: tuple[str, ...], values: np.ndarray) -> dict[str, list[float]]:

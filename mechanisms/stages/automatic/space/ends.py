@@ -273,7 +273,7 @@ class Ends:
             if square
             else shapes.disc(place, axis, gap, half + s.rod)
         ]
-        end.lines = tube_lines(place, axis, outer, half)
+        end.lines = shapes.tube_lines(place, axis, outer, half)
         self.ends[marker.body.name].append(end)
 
     def _universal(self, joint: Joint) -> None:
@@ -487,15 +487,6 @@ class Ends:
         shape = marker.body.shape
         along = shape is not None and shape.kind == "rod" and abs(marker.axis[0]) > AXIAL
         return MM * shape.radius if along and shape is not None and shape.radius > 0.0 else self.sizes.rod
-
-
-def tube_lines(middle: Array, axis: Array, radius: float, half: float) -> list[Line]:
-    """Return thin lines on a cylinder, which end where it ends."""
-    x = across(axis)
-    y, thin = np.cross(axis, x), 0.25 * radius
-    turn = np.linspace(0.0, 2.0 * math.pi, 9)[:-1]
-    rim = middle + (radius - thin) * (np.outer(np.cos(turn), x) + np.outer(np.sin(turn), y))
-    return [(place - (half - thin) * axis, place + (half - thin) * axis, thin) for place in rim]
 
 
 def stud_axis(moves: Moves, marker: Marker, way: Array) -> tuple[Array, float]:

@@ -5,6 +5,8 @@ Places and directions are (3,) arrays in the frame of the body; axes are unit ve
 
 from __future__ import annotations
 
+import math
+
 import cadquery as cq
 import numpy as np
 from numpy.typing import NDArray
@@ -74,6 +76,15 @@ def yoke(
         out.append(disc(cheek, axis, width, wall / 2))
     out.append(box(middle + (depth + bridge / 2) * back, back, side, (bridge / 2, width, inner + wall)))
     return out
+
+
+def tube_lines(middle: Array, axis: Array, radius: float, half: float) -> list[tuple[Array, Array, float]]:
+    """Return thin lines (two places and a radius each) on a cylinder, which end where it ends."""
+    x = across(axis)
+    y, thin = np.cross(axis, x), 0.25 * radius
+    turn = np.linspace(0.0, 2.0 * math.pi, 9)[:-1]
+    rim = middle + (radius - thin) * (np.outer(np.cos(turn), x) + np.outer(np.sin(turn), y))
+    return [(place - (half - thin) * axis, place + (half - thin) * axis, thin) for place in rim]
 
 
 def fused(solids: list[cq.Shape], cuts: list[cq.Shape]) -> cq.Workplane:

@@ -22,7 +22,7 @@ DURATION = 2.0
 
 
 def build(p: Params) -> Mechanism:
-    """The tip stands at the origin; the top leans towards x and is let go without precession."""
+    """The tip stands at the origin; the top leans towards x and starts without precession."""
     m = Mechanism("heavy_top")
     axis = (sin(radians(p.lean)), 0.0, cos(radians(p.lean)))
     centre = tuple(p.stem * part for part in axis)

@@ -51,7 +51,7 @@ class Film:
         Raises UserError if names, bodies or files do not fit together.
         """
         self.motion: Motion = cast(Motion, motion)
-        """Of a mechanism in space its Motion3, which :attr:`in_space` is then, too: what both have is asked alike."""
+        """Motion that is shown; in space a Motion3, as :attr:`in_space` is: what both have is asked alike."""
         self.in_space = motion if isinstance(motion, Motion3) else None
         self.parts, self.shot, self.folder, self.aspect = parts, shot, folder, aspect
         self.poses: Any = SpacePoses(motion, parts) if isinstance(motion, Motion3) else Poses(motion)

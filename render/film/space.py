@@ -137,11 +137,11 @@ class SpacePoses:
         """Return places (n, 3) and rotations (n, 3, 3) of the massless link of a joint."""
         assert body.link
         joint = self.motion.joints[body.link.joint]
-        (first, one), (second, other) = (
+        (first, axis), (second, other) = (
             self._marker(name, marker, times) for name, marker in zip(joint.bodies, joint.markers, strict=True)
         )
         if joint.kind == "universal":
-            return first, np.stack([one, other, np.cross(one, other)], axis=2)
+            return first, np.stack([axis, other, np.cross(axis, other)], axis=2)
         x = (second - first) / np.linalg.norm(second - first, axis=1, keepdims=True)
         near = matrices(self.over(body.link.body, times)[1]) @ np.array(body.link.z)
         z = near - (near * x).sum(axis=1, keepdims=True) * x

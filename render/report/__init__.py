@@ -1,4 +1,4 @@
-"""report.md: what a run found, in sentences and tables: ``python -m render report NAME``."""
+"""report.md: what a run chapters, in sentences and tables: ``python -m render report NAME``."""
 
 from __future__ import annotations
 
@@ -64,11 +64,11 @@ def report(motion: AnyMotion, parts: Parts | None, clearance: Clearance | None, 
     lines += [said, ""] if said else []
     if isinstance(motion, Motion3):
         lines += motion_in_space(motion)
-        found = sections_in_space(motion, parts)
+        chapters = sections_in_space(motion, parts)
     else:
         lines += sections.motion_section(motion)
-        found = _planar_sections(motion, parts, clearance)
-    for head, body in found:
+        chapters = _planar_sections(motion, parts, clearance)
+    for head, body in chapters:
         if body:
             lines += ["", f"## {head}", "", *body]
     text = "\n".join(lines)

@@ -130,7 +130,7 @@ class DriverMotion3(Strict, kw_only=True):
 
 
 class Row3(Strict, kw_only=True):
-    """What a force measures (m or rad), its rate, and its push along that (N or N m)."""
+    """One measure of a force (m or rad), its rate, and the push along it (N or N m)."""
 
     value: Series
     rate: Series

@@ -155,12 +155,12 @@ def test_parts_are_watertight_and_no_two_bodies_share_room(name: str) -> None:
         for body, own in solids.items():
             place, turned = (part[row] for part in moves.poses[body])
             moved = np.column_stack([turned, place])
-            placed += [(body, one.transform(moved)) for one in own]
-        for k, (body, one) in enumerate(placed):
+            placed += [(body, piece.transform(moved)) for piece in own]
+        for k, (body, piece) in enumerate(placed):
             for other, another in placed[:k]:
                 if other != body:
-                    shared = (one ^ another).volume()
-                    assert shared < 1e-3 * min(one.volume(), another.volume()), (row, body, other, shared)
+                    shared = (piece ^ another).volume()
+                    assert shared < 1e-3 * min(piece.volume(), another.volume()), (row, body, other, shared)
 
 
 def test_a_joint_without_a_shape_raises_an_error_that_names_it() -> None:
@@ -183,10 +183,10 @@ def test_a_ball_that_swings_all_round_raises_an_error_that_names_its_joint() -> 
 def test_bodies_that_would_meet_raise_an_error_that_names_them_and_the_time() -> None:
     """What a crank carries at its tip sweeps through the shaft of another body."""
     m = Mechanism("crossed")
-    one, other = m.body("one"), m.shaft("other", (0.05, -0.2, 0.0), (0.05, 0.2, 0.0), 0.004)
-    m.revolute("hinge", m.ground, one, at=(0, 0, -0.1), axis=(0, 1, 0))
+    crank, other = m.body("one"), m.shaft("other", (0.05, -0.2, 0.0), (0.05, 0.2, 0.0), 0.004)
+    m.revolute("hinge", m.ground, crank, at=(0, 0, -0.1), axis=(0, 1, 0))
     m.body("end")
-    m.revolute("tip", one, "end", at=(0, 0, 0.05), axis=(0, 1, 0))
+    m.revolute("tip", crank, "end", at=(0, 0, 0.05), axis=(0, 1, 0))
     m.revolute("bearing", m.ground, other, at=(0.05, 0.19, 0), axis=(0, 1, 0))
     for driver, joint in (("a", "hinge"), ("b", "bearing"), ("c", "tip")):
         m.drive_turn(driver, joint, constant_rate(2 * math.pi))

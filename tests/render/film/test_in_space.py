@@ -124,8 +124,8 @@ def test_bodies_and_crosses_of_the_glb_move_as_data_json_has_them(made: Out) -> 
     np.testing.assert_allclose(q, np.roll(film.in_space.bodies["middle"].quaternion, -1, axis=1), atol=1e-6)
     assert ("ground", "rotation") not in tracks
     place, turned = film.poses.over("cross_in", film.poses.time)
-    one, other = (film.in_space.joints["cross_in"].markers[k] for k in (0, 1))
-    first = matrices(film.in_space.bodies["input"].quaternion) @ np.array(one.axis)
+    marker, other = (film.in_space.joints["cross_in"].markers[k] for k in (0, 1))
+    first = matrices(film.in_space.bodies["input"].quaternion) @ np.array(marker.axis)
     second = matrices(film.in_space.bodies["middle"].quaternion) @ np.array(other.axis)
     np.testing.assert_allclose(matrices(turned)[:, :, 0], first, atol=1e-9)
     np.testing.assert_allclose(matrices(turned)[:, :, 1], second, atol=1e-9)

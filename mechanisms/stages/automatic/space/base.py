@@ -21,7 +21,7 @@ STEPS = (0.0, 4.0, 7.0, 11.0, 16.0, 22.0, 30.0, 40.0)
 POST = 1.15
 """Radius of a post, in rods."""
 NEAR = 0.35
-"""What moves keeps so far from a post, in rods."""
+"""Distance that moving parts keep from a post, in rods."""
 BELOW = 2.5
 """The plate lies so far below all that moves, in rods."""
 FINE = 1.5

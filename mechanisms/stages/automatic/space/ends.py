@@ -58,7 +58,7 @@ class End:
 
 @dataclass
 class Stand:
-    """What a joint asks of ground: a part whose middle a post must hold."""
+    """Part that a joint asks of ground: one whose middle a post must hold."""
 
     joint: str
     place: Array
@@ -84,7 +84,7 @@ class Link:
     body: str = "ground"
     """Body to which its z axis is nearly fixed; its x axis goes from the first to the second place of the joint."""
     z: Array = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
-    """That axis in the body's frame."""
+    """Direction of this axis in the body's frame."""
 
 
 class Ends:
@@ -108,10 +108,10 @@ class Ends:
 
     def _refuse_meeting_joints(self) -> None:
         for body, anchors in self.anchors.items():
-            for (one, place), (other, another) in combinations(anchors.items(), 2):
+            for (name, place), (other, another) in combinations(anchors.items(), 2):
                 if body != "ground" and np.linalg.norm(place - another) < self.sizes.rod:
                     raise UserError(
-                        f"{self.moves.m.name}: joints '{one}' and '{other}' of '{body}' are on one place, where their "
+                        f"{self.moves.m.name}: joints '{name}' and '{other}' of '{body}' are on one place, where their "
                         "parts would meet. Move one aside (a hinge or slide acts anywhere along its axis, a slide also "
                         "beside it), or write a parts.py"
                     )

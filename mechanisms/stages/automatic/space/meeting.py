@@ -13,7 +13,7 @@ from shared.stage.errors import UserError
 DEEP = 0.5
 """Depth from which on two parts meet, in rods: lines have round ends where parts end flat."""
 NEAR = 5.5
-"""What lies so near to a joint of both bodies belongs to it, in rods."""
+"""Distance from a joint of both bodies within which parts belong to it, in rods."""
 POINTS = 9
 """Points of a line that are compared with the lines of other bodies."""
 
@@ -22,13 +22,14 @@ def refuse_meeting(moves: Moves, lines: dict[str, list[Line]], stands: list[Stan
     """Raise UserError for two bodies whose parts meet; ``joined`` has the joint of each massless link."""
     whole = lines | {"ground": [(stand.place, stand.place, stand.reach) for stand in stands]}
     clouds = {body: _cloud(moves, body, own) for body, own in whole.items() if own}
-    for one, other in combinations(clouds, 2):
-        joints = _common(moves, one, other, joined)
-        row, depth = _deepest(clouds[one], clouds[other], joints, moves.sizes.rod)
+    for first_body, other in combinations(clouds, 2):
+        joints = _common(moves, first_body, other, joined)
+        row, depth = _deepest(clouds[first_body], clouds[other], joints, moves.sizes.rod)
         if depth > DEEP * moves.sizes.rod:
             time = float(moves.solution.t[moves.rows[row]])
             raise UserError(
-                f"{moves.m.name}: parts of '{one}' and '{other}' would meet at t = {time:.4g} s, by {depth:.1f} mm: "
+                f"{moves.m.name}: parts of '{first_body}' and '{other}' would meet at t = {time:.4g} s, by "
+                f"{depth:.1f} mm: "
                 "straight rods do not go round each other. Change lengths or the range of the motion, or write a "
                 "parts.py"
             )
@@ -42,12 +43,12 @@ def _cloud(moves: Moves, body: str, own: list[Line]) -> tuple[Array, Array]:
     return moves.world(body, points), radii
 
 
-def _common(moves: Moves, one: str, other: str, joined: dict[str, str]) -> list[Array]:
+def _common(moves: Moves, first_body: str, other: str, joined: dict[str, str]) -> list[Array]:
     """Return the places (T, 3) over the motion of the joints that two bodies have in common."""
     out = []
     for joint in moves.joints():
         links = {name for name, of in joined.items() if of == joint.name}
-        if {one, other} <= {*joint.bodies, *links}:
+        if {first_body, other} <= {*joint.bodies, *links}:
             out += [moves.world(marker.body.name, moves.place(marker))[:, 0] for marker in (joint.i, joint.j)]
     return out
 
@@ -65,5 +66,5 @@ def _deepest(
             near, by = near[kept], by[kept]
         if len(near):
             gap = np.linalg.norm(near[:, None] - b[row], axis=2) - by[:, None] - of_b
-            worst = max(worst, (row, -float(gap.min())), key=lambda found: found[1])
+            worst = max(worst, (row, -float(gap.min())), key=lambda depth: depth[1])
     return worst

@@ -95,7 +95,7 @@ def _refuse_unknown_pieces(name: str, bodies: Bodies, home: dict[str, str]) -> N
 
 
 class Measured(NamedTuple):
-    """What masses tell beside centre and inertia in the plane."""
+    """Numbers of masses beside their centre and inertia in the plane."""
 
     along: bool = False
     """z of the solids is that of the model, so masses have it, too."""

@@ -15,7 +15,7 @@ import numpy as np
 from render.freshness import Freshness, current_clearance
 from render.report import description
 from render.report.facts import facts
-from shared.contract import read_motion, read_parts
+from shared.contract import read_any_motion, read_parts
 from shared.contract.quantity import counted
 from shared.stage.console import say, warn
 from shared.stage.errors import UserError
@@ -168,7 +168,7 @@ def run(folder: Path = FOLDER) -> int:
         if why := freshness.why_older(out, out.poster):
             warn("gallery", f"{name} is left out: its poster is of an older version: {why}; {to_run('poster', name)}")
             continue
-        motion = read_motion(out.motion, name)
+        motion = read_any_motion(out.motion, name)
         parts = read_parts(out.parts, name) if out.parts.is_file() else None
         clearance = current_clearance(out, parts, "gallery")
         posters[f"{name}.jpg"] = small_poster(out.poster)

@@ -7,7 +7,7 @@ from typing import Literal
 
 import msgspec
 
-from shared.contract import Motion
+from shared.contract import AnyMotion
 from shared.contract.parts import Kind, Mount
 from shared.contract.shot import Shot
 
@@ -352,15 +352,15 @@ LARGE = 0.8
 class Family:
     """Facts that decide the look: stand, gas or motor drive, the diagonal of its sweep (m)."""
 
-    mount: Kind
+    mount: Kind | Literal["bench"]
     engine: bool
     driven: bool
     size: float
 
     @classmethod
-    def from_motion(cls, motion: Motion, mount: Mount, size: float) -> Family:
+    def from_motion(cls, motion: AnyMotion, mount: Mount, size: float) -> Family:
         """Return the family of a machine with these files."""
-        engine = any(force.gas is not None for force in motion.forces.values())
+        engine = any(getattr(force, "gas", None) is not None for force in motion.forces.values())
         return cls(mount.kind, engine, bool(motion.drivers), size)
 
 
@@ -381,6 +381,6 @@ def chosen(family: Family) -> str:
     return "studio" if family.mount == "desk" else "bench"
 
 
-def look_of(shot: Shot, motion: Motion, mount: Mount, size: float) -> Look:
+def look_of(shot: Shot, motion: AnyMotion, mount: Mount, size: float) -> Look:
     """Return the look that a shot names, else the one chosen."""
     return LOOKS[shot.look or chosen(Family.from_motion(motion, mount, size))]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import msgspec
 
-from shared.contract import Motion, Parts
+from shared.contract import Motion, Motion3, Parts
 from shared.contract.clearance import Clearance
 from shared.contract.shot import Shot
 from shared.contract.skeleton import Skeleton
@@ -17,6 +17,7 @@ from shared.stage.paths import ROOT
 FOLDER = ROOT / "docs" / "schema"
 PUBLISHED: dict[str, type[msgspec.Struct]] = {
     "motion": Motion,
+    "motion3": Motion3,
     "parts": Parts,
     "clearance": Clearance,
     "shot": Shot,
@@ -27,11 +28,12 @@ PUBLISHED: dict[str, type[msgspec.Struct]] = {
 def content(kind: type[msgspec.Struct]) -> bytes:
     """The JSON Schema of one file type, as published.
 
-    ``schema`` and ``schema_version`` have defaults in the code, but a file must carry them.
+    ``schema``, ``schema_version`` and ``space`` have defaults in the code, but a file must carry them.
     """
     schema = msgspec.json.schema(kind)
     definition = schema["$defs"][kind.__name__]
-    definition["required"] = ["schema", "schema_version", *definition.get("required", [])]
+    said = [name for name in ("schema", "schema_version", "space") if name in definition["properties"]]
+    definition["required"] = [*said, *definition.get("required", [])]
     whole = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": kind.__name__, **schema}
     return (json.dumps(whole, indent=2, ensure_ascii=False) + "\n").encode()
 

@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.film.clock import Clock
-from render.film.scene import ArcSpec, ArrowSpec, LegendRow, Point
-from render.film.vectors import LONGEST, TINY, UNIT, Torque, Vector, at_time, scales_of
-from shared.contract import Motion
+from render.film.scene import ArcSpec, ArrowSpec, LegendRow, Point, across_axes
+from render.film.vectors import LONGEST, TINY, UNIT, Torque, Vector, at_time, lifted, scales_of
+from shared.contract import AnyMotion
 from shared.contract.quantity import figures, live, written
 from shared.contract.shot import Shot
 from shared.contract.signals import SIGNALS, rgb
+from shared.contract.space import ForceMotion3
 
 # Arrows of a film: how long each is, and its line in the legend. One scale for the whole clip and for each unit.
 
@@ -82,12 +83,12 @@ class Arrows:
         """
         out = []
         for vector, z in zip(self.vectors, heights, strict=True):
-            x, y, u, v = (float(k) for k in at_time(self.time, np.hstack([vector.place, vector.value]), t))
-            size = math.hypot(u, v)
+            x, y, z, u, v, w = (float(k) for k in at_time(self.time, np.hstack(vector.lifted(z)), t))
+            size = math.hypot(u, v, w)
             length = self._length(size, vector.unit)
             if size == 0 or length < TINY * FULL * self.size:
                 length, size = 0.0, 1.0
-            out.append(((x, y, z), (x + u / size * length, y + v / size * length, z)))
+            out.append(((x, y, z), (x + u / size * length, y + v / size * length, z + w / size * length)))
         return out
 
     def tips(self, heights: Sequence[float], way: Array | None = None) -> list[Array]:
@@ -99,8 +100,9 @@ class Arrows:
         for vector, z in zip(self.vectors, heights, strict=True):
             length = self._lengths(vector)
             seen = length >= TINY * FULL * self.size
-            tip = vector.place[seen] + vector.value[seen] * (length[seen] / vector.size[seen])[:, None]
-            out.append(np.column_stack([tip, np.full(len(tip), z)]) - (0.0 if way is None else way[seen]))
+            place, value = vector.lifted(z)
+            tip = place[seen] + value[seen] * (length[seen] / vector.size[seen])[:, None]
+            out.append(tip - (0.0 if way is None else way[seen]))
         return out
 
     def _lengths(self, vector: Vector) -> Array:
@@ -166,16 +168,19 @@ class Arcs:
             for quantity in dict.fromkeys(torque.quantity for torque in self.torques)
         ]
 
-    def sweeps_at(self, t: float, heights: Sequence[float]) -> list[tuple[Point, float]]:
-        """Return the centre and sweep (rad, counter-clockwise) of each at time ``t``.
+    def sweeps_at(self, t: float, heights: Sequence[float]) -> list[tuple[Point, float, Point]]:
+        """Return the centre, the sweep (rad, counter-clockwise) and the axis of each at time ``t``.
 
         They lie ``heights`` (m) over the base.
         """
         out = []
         for torque, z in zip(self.torques, heights, strict=True):
-            x, y, value = (float(k) for k in at_time(self.time, np.column_stack([torque.place, torque.value]), t))
+            rows = np.column_stack([lifted(torque.place, z), torque.value, torque.axes])
+            x, y, z, value, *axis = (float(k) for k in at_time(self.time, rows, t))
+            long = math.hypot(*axis)
+            about = (axis[0] / long, axis[1] / long, axis[2] / long) if long > 0.0 else (0.0, 0.0, 1.0)
             sweep = float(self._sweep(np.array([value]))[0])
-            out.append(((x, y, z), sweep if abs(sweep) >= TINY * FULL_TURN else 0.0))
+            out.append(((x, y, z), sweep if abs(sweep) >= TINY * FULL_TURN else 0.0, about))
         return out
 
     def rims(self, heights: Sequence[float], way: Array | None = None) -> list[Array]:
@@ -184,8 +189,9 @@ class Arcs:
         out = []
         for k, (torque, z) in enumerate(zip(self.torques, heights, strict=True)):
             reach = self._radius(k) + STOUT * HEAD * self.size
-            rim = torque.place[:, None] + reach * np.stack([np.cos(turn), np.sin(turn)], axis=1)
-            ring = np.column_stack([rim.reshape(-1, 2), np.full(8 * len(torque.place), z)])
+            x, y = across_axes(torque.axes)
+            rim = np.cos(turn)[None, :, None] * x[:, None] + np.sin(turn)[None, :, None] * y[:, None]
+            ring = (lifted(torque.place, z)[:, None] + reach * rim).reshape(-1, 3)
             out.append(ring - (0.0 if way is None else np.repeat(way, 8, axis=0)))
         return out
 
@@ -211,7 +217,7 @@ FIGURES = 3
 """Significant digits."""
 
 
-def title(motion: Motion, shot: Shot) -> str:
+def title(motion: AnyMotion, shot: Shot) -> str:
     """Return the shot's title, or the mechanism's name in words; empty where none is asked for."""
     if shot.title is None:
         return ""
@@ -235,7 +241,7 @@ def rate(clock: Clock, shot: Shot) -> str:
     return f"{figures(1 / clock.rate if slower else clock.rate, FIGURES)} times {'slower' if slower else 'faster'}"
 
 
-def number(motion: Motion, shot: Shot) -> Callable[[float], str]:
+def number(motion: AnyMotion, shot: Shot) -> Callable[[float], str]:
     """Return the number that lives, as a function of time; it stands still."""
     name = shot.title.number if shot.title is not None else ""
     if name is None:
@@ -245,7 +251,7 @@ def number(motion: Motion, shot: Shot) -> Callable[[float], str]:
     time = np.asarray(motion.time)
     if name in motion.points:
         point = motion.points[name]
-        speeds = np.hypot(point.vx, point.vy)[:, None]
+        speeds = np.hypot(np.hypot(point.vx, point.vy), getattr(point, "vz", 0.0))[:, None]
         slow, fast = live(speeds[:, 0].tolist(), "m/s", FIGURES), live((3.6 * speeds[:, 0]).tolist(), "km/h", FIGURES)
 
         def speed(t: float) -> str:
@@ -254,17 +260,22 @@ def number(motion: Motion, shot: Shot) -> Callable[[float], str]:
 
         return speed
     load = motion.drivers.get(name) or motion.forces[name]
-    efforts = np.asarray(load.effort if load.effort is not None else np.zeros(len(time)), float)[:, None]
+    effort = load.rows[0].effort if isinstance(load, ForceMotion3) else load.effort
+    efforts = np.asarray(effort if effort is not None else np.zeros(len(time)), float)[:, None]
     write = live(efforts[:, 0].tolist(), load.effort_unit, FIGURES)
     return lambda t: f"{name}  {write(float(at_time(time, efforts, t)[0]))}"
 
 
-def _shown_effort(motion: Motion) -> str:
+def _shown_effort(motion: AnyMotion) -> str:
     """Return the first driver with an effort, else of what acts in its place, else of the traced points."""
     drivers = [name for name, driver in motion.drivers.items() if any(driver.effort)]
     acting = [
         name
         for name, force in motion.forces.items()
-        if motion.drivers and force.drives and force.effort is not None and any(force.effort)
+        if not isinstance(force, ForceMotion3)
+        and motion.drivers
+        and force.drives
+        and force.effort is not None
+        and any(force.effort)
     ]
     return next(iter((*drivers, *acting, *motion.drivers, *motion.points)), "")

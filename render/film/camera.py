@@ -18,12 +18,16 @@ from shared.contract.parts import Mount
 from shared.contract.shot import Camera
 
 Array = NDArray[np.float64]
-LYING, STANDING = (-16.0, 42.0), (-24.0, 10.0)
-"""Azimuth and elevation (degrees) where a shot says none: of what lies on a desk, and, at eye level, of what stands."""
+LYING, STANDING, IN_SPACE = (-16.0, 42.0), (-24.0, 10.0), (-34.0, 24.0)
+"""Azimuth and elevation (degrees) where a shot says none: of what lies on a desk, at eye level of what stands, and in a
+three-quarter view of what moves in space."""
 TALL = 9 / 16
-LYING_TALL, STANDING_TALL = (-6.0, 15.0), (-12.0, 2.0)
+LYING_TALL, STANDING_TALL, TALL_IN_SPACE = (-6.0, 15.0), (-12.0, 2.0), (-8.0, 6.0)
 """Degrees added to these in a picture that is 9:16, and in part in those between: from higher up what lies is taller,
 and from farther aside what stands is narrower."""
+
+
+USUAL = {"desk": (LYING, LYING_TALL), "bench": (IN_SPACE, TALL_IN_SPACE)}
 
 
 def angles(shot: Camera, mount: Mount, aspect: float = ASPECT) -> tuple[float, float]:
@@ -31,9 +35,8 @@ def angles(shot: Camera, mount: Mount, aspect: float = ASPECT) -> tuple[float, f
 
     What the shot does not specify follows from how the machine stands, and from the ``aspect`` of the picture.
     """
-    lies = mount.kind == "desk"
     part = min(max((ASPECT - aspect) / (ASPECT - TALL), 0.0), 1.0)
-    usual, more = (LYING, LYING_TALL) if lies else (STANDING, STANDING_TALL)
+    usual, more = USUAL.get(mount.kind, (STANDING, STANDING_TALL))
     azimuth, elevation = (value + part * added for value, added in zip(usual, more, strict=True))
     azimuth = azimuth if shot.azimuth is None else shot.azimuth
     elevation = elevation if shot.elevation is None else shot.elevation

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.film.poses import Moment
-from shared.contract import Motion
+from shared.contract import AnyMotion
 from shared.contract.quantity import figures
 from shared.contract.shot import Shot
 
@@ -116,7 +116,7 @@ STEPS = (1.0, 2.0, 5.0)
 class Clock:
     """Times that the frames of a film show, from its motion and its shot."""
 
-    def __init__(self, motion: Motion, shot: Shot) -> None:
+    def __init__(self, motion: AnyMotion, shot: Shot) -> None:
         self.shot, self.repeats = shot, motion.period is not None
         self.start, self.end = motion.time[0], motion.time[-1]
         span = self.end - self.start
@@ -201,7 +201,7 @@ class Clock:
         return f"{self.showings} x {seconds:.3g} s and {hold:.2g} s held at the end, {speed(self.rate)}"
 
 
-def turns_of(motion: Motion) -> int:
+def turns_of(motion: AnyMotion) -> int:
     """Return the whole turns of the slowest driver that turns in one period; 1 where none does."""
     turns = [
         round(abs(driver.value[-1] - driver.value[0]) / math.tau)

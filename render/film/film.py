@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
+from typing import Any, cast
 
 import msgspec
 import numpy as np
@@ -22,16 +23,17 @@ from render.film.poses import Poses
 from render.film.rollers import Rollers
 from render.film.scene import Card, LabelSpec, LegendRow, LineSpec, Plane, Scene, State, StudioSpec, Writing
 from render.film.section import between_bodies
+from render.film.space import SpaceHeights, SpacePoses, coils, torques_in_space, vectors_in_space
 from render.film.tubes.belts import Belt, belts
 from render.film.tubes.cables import Cable, cables
 from render.film.tubes.spirals import Spiral, spirals
 from render.film.tubes.stretched import Stretched, stretched
 from render.film.tubes.trails import Trails, trails_of
-from render.film.vectors import rounding, torques, vectors
+from render.film.vectors import Torque, Vector, rounding, torques, vectors
 from render.looks import look_of
 from render.presets import ASPECT
-from shared.contract import Held, Motion, Parts
-from shared.contract.shot import Names, Shot, refuse_unknown
+from shared.contract import AnyMotion, Held, Motion, Motion3, Parts
+from shared.contract.shot import Names, Quantity, Shot, refuse_unknown
 
 Array = NDArray[np.float64]
 MANY = 20_000
@@ -43,21 +45,31 @@ LOOKED = 60
 class Film:
     """Everything the film shows, without a picture yet."""
 
-    def __init__(self, motion: Motion, parts: Parts, shot: Shot, folder: Path, aspect: float = ASPECT) -> None:
+    def __init__(self, motion: AnyMotion, parts: Parts, shot: Shot, folder: Path, aspect: float = ASPECT) -> None:
         """Read the STL files in ``folder`` for pictures of that ``aspect``, width over height.
 
         Raises UserError if names, bodies or files do not fit together.
         """
-        self.motion, self.parts, self.shot, self.folder, self.aspect = motion, parts, shot, folder, aspect
-        self.poses = Poses(motion)
+        self.motion: Motion = cast(Motion, motion)
+        """Motion that is shown; in space a Motion3, as :attr:`in_space` is: what both have is asked alike."""
+        self.in_space = motion if isinstance(motion, Motion3) else None
+        self.parts, self.shot, self.folder, self.aspect = parts, shot, folder, aspect
+        self.poses: Any = SpacePoses(motion, parts) if isinstance(motion, Motion3) else Poses(motion)
+        """Poses | SpacePoses, of which a pose, a path and what is carried are asked alike."""
         self.clock = Clock(motion, shot)
         refuse_unknown(shot, Names.from_motion(motion, parts))
         refuse_mismatch(motion, parts, folder)
-        paths = trail_heights(motion, parts, trails_of(motion, shot))
+        trails = trails_of(motion, shot)
+        paths = {t.point: 0.0 for t in trails} if isinstance(motion, Motion3) else trail_heights(motion, parts, trails)
         self.space = SweptSpace(self.poses, parts, folder, paths)
         self.trails = Trails(self.poses, self.clock, shot, paths, self.size)
         self.rollers = Rollers(self.poses, parts)
-        self.heights = Heights(self.poses, parts, self.space, self.clock)
+        self.heights: Any = (
+            SpaceHeights(self.poses, parts.mount.up, self.space.size)
+            if self.in_space
+            else Heights(self.poses, parts, self.space, self.clock)
+        )
+        """Heights | SpaceHeights"""
         self.number = arrows.number(motion, shot)
         self.look = look_of(shot, motion, parts.mount, self.space.size)
 
@@ -67,7 +79,7 @@ class Film:
         return Scene(
             mechanism=self.motion.mechanism,
             fps=self.shot.fps,
-            pieces=piece_specs(self.parts, self.shot, self.folder, self.motion),
+            pieces=piece_specs(self.parts, self.shot, self.folder, self.in_space or self.motion),
             trails=self.trails.specs(self.look.dark),
             labels=[LabelSpec(text=s.text, size=s.size * self.size, colour=s.colour) for s in self.shot.labels],
             studio=self.studio,
@@ -80,7 +92,9 @@ class Film:
     @cached_property
     def cut(self) -> tuple[Plane, ...]:
         """Planes of the world by which a section cuts springs, ropes and belts."""
-        return between_bodies(self.parts, self.shot.section, self.folder, self.motion) if self.drawn else ()
+        if self.in_space is not None or not self.drawn:
+            return ()
+        return between_bodies(self.parts, self.shot.section, self.folder, self.motion)
 
     @cached_property
     def studio(self) -> StudioSpec:
@@ -107,7 +121,7 @@ class Film:
         at = self.clock.moment(frame)
         arrows, arcs = self._arrow_heights
         return State(
-            bodies={name: self.poses.body(name, at) for name in self.parts.bodies} | self.rollers.poses(at),
+            bodies={name: self.poses.pose(name, at) for name in self.parts.bodies} | self.rollers.poses(at),
             trails=self.trails.paths(frame),
             labels=[self.heights.words(label, at) for label in self.shot.labels],
             camera=camera or self.camera(int(frame)),
@@ -151,18 +165,20 @@ class Film:
     @cached_property
     def arrows(self) -> Arrows:
         """The straight arrows that the shot shows."""
-        return Arrows(self.poses.time, vectors(self.motion, self.shot.show), self.size)
+        return Arrows(self.poses.time, _vectors(self.in_space or self.motion, self.shot.show), self.size)
 
     @cached_property
     def arcs(self) -> Arcs:
         """The curved ones."""
-        forces = vectors(self.motion, ("forces", "reactions"))
+        forces = _vectors(self.in_space or self.motion, ("forces", "reactions"))
         least = rounding(forces, self.size)
-        return Arcs(self.poses.time, torques(self.motion, self.shot.show), self.size, least)
+        return Arcs(self.poses.time, _torques(self.in_space or self.motion, self.shot.show), self.size, least)
 
     @cached_property
-    def drawn(self) -> list[Stretched | Spiral | Belt | Cable]:
+    def drawn(self) -> list[Any]:
         """All that is laid anew in every frame."""
+        if self.in_space is not None:
+            return list(coils(self.in_space, self.size))
         return [*self.stretched, *self.spirals, *self.belts, *self.cables]
 
     @cached_property
@@ -337,3 +353,11 @@ class Film:
             places = self._places_of(cards)
             card = cards[composing.emptiest(looks, self._seen_moving, standing, places, self.aspect)]
         return Writing(lines=self._lines, legend=legend, card=card, on_bright=not self.look.dark)
+
+
+def _vectors(motion: AnyMotion, show: Sequence[Quantity]) -> list[Vector]:
+    return vectors_in_space(motion, show) if isinstance(motion, Motion3) else vectors(motion, show)
+
+
+def _torques(motion: AnyMotion, show: Sequence[Quantity]) -> list[Torque]:
+    return torques_in_space(motion, show) if isinstance(motion, Motion3) else torques(motion, show)

@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterable
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,8 @@ from numpy.typing import NDArray
 from render.film.clock import Clock, turns_of
 from render.film.poses import Moment, Poses
 from render.film.scene import Point
-from render.film.solids import outermost, prism, read_corners, swept
+from render.film.solids import outermost, prism, read_corners
+from render.film.space import SpacePoses
 from render.film.tubes.spirals import Site
 from render.film.tubes.stretched import placed
 from shared.contract import Motion, Parts, Shape
@@ -30,8 +32,11 @@ SAMPLES, MOST = 120, 1200
 class SweptSpace:
     """Points (n, 3) in m around everything that is seen, over the whole motion."""
 
-    def __init__(self, poses: Poses, parts: Parts, folder: Path, paths: dict[str, float]) -> None:
-        """``folder`` holds the STL files; ``paths`` has the height of each traced point that leaves a trail."""
+    def __init__(self, poses: Any, parts: Parts, folder: Path, paths: dict[str, float]) -> None:
+        """``poses`` are Poses or SpacePoses, ``folder`` holds the STL files.
+
+        ``paths`` has the height of each traced point that leaves a trail.
+        """
         self._poses, self._paths = poses, paths
         self._files = {
             body: [folder / piece.stl for piece in solids.pieces.values()] for body, solids in parts.bodies.items()
@@ -45,28 +50,32 @@ class SweptSpace:
     @cached_property
     def moving(self) -> Array:
         """Return the points that move, with trails; all points if nothing moves."""
-        bodies = [cloud for name, cloud in self._bodies.items() if name in self._poses.motion.bodies]
+        bodies = [cloud for name, cloud in self._bodies.items() if name != "ground"]
         return np.concatenate([*bodies, *self._trails]) if bodies else self.all
 
     @cached_property
     def machine(self) -> Array:
-        """Return the points that move, without trails; all points if nothing moves."""
-        bodies = [cloud for name, cloud in self._bodies.items() if name in self._poses.motion.bodies]
+        """Return the points that move, without trails; all points if nothing moves.
+
+        In space the posts that hold joints belong to it, all of ground but its plate.
+        """
+        bodies = [cloud for name, cloud in self._bodies.items() if name != "ground"]
+        if bodies and isinstance(self._poses, SpacePoses):
+            bodies += self._outlines.get("ground", [])[1:]
         return np.concatenate(bodies) if bodies else self.all
 
     @cached_property
     def around(self) -> Array:
         """Return the points that stand still: the base and all that is fixed to it; none if nothing moves."""
-        moving = self._poses.motion.bodies
-        bodies = [cloud for name, cloud in self._bodies.items() if name not in moving]
+        bodies = [cloud for name, cloud in self._bodies.items() if name == "ground"]
         return np.concatenate(bodies) if bodies and len(bodies) < len(self._bodies) else np.zeros((0, 3))
 
     def places(self, times: Array) -> Array:
         """Return the outermost points (T, n, 3) of all that moves at ``times`` (T,); none if nothing moves."""
         corners: list[Array] = [np.zeros((len(times), 0, 3))]
         for body, points in self._farthest.items():
-            if body in self._poses.motion.bodies:
-                corners.append(swept(points, self._poses.over(body, times)).reshape(len(times), -1, 3))
+            if body != "ground":
+                corners.append(self._poses.carried(body, points, times).reshape(len(times), -1, 3))
         return np.concatenate(corners, axis=1)
 
     def outlines(self, body: str) -> list[Array]:
@@ -124,7 +133,9 @@ class SweptSpace:
 
     @cached_property
     def _outlines(self) -> dict[str, list[Array]]:
-        """The upright prism around each piece, in its body's frame."""
+        """The upright prism around each piece, in its body's frame; in space its outermost points."""
+        if isinstance(self._poses, SpacePoses):
+            return {body: [outermost(read_corners(file)) for file in files] for body, files in self._files.items()}
         return {body: [prism(read_corners(file)) for file in files] for body, files in self._files.items()}
 
     @cached_property
@@ -148,18 +159,16 @@ class SweptSpace:
         clouds: dict[str, Array] = {}
         times = np.array([at.time for at in self._moments])
         for body, farthest in self._farthest.items():
-            poses = self._poses.over(body, times)
-            if np.ptp(poses, axis=0).max() < 1e-12:
-                clouds[body] = swept(np.concatenate(self._outlines[body]), poses[:1])
+            if self._poses.is_still(body, times):
+                clouds[body] = self._poses.carried(body, np.concatenate(self._outlines[body]), times[:1])
             else:  # a chain of a hundred links would have forty million points
-                clouds[body] = swept(farthest, poses)
+                clouds[body] = self._poses.carried(body, farthest, times)
         return clouds
 
     @cached_property
     def _trails(self) -> list[Array]:
         times = np.array([at.time for at in self._moments])
-        paths = [(self._poses.point(point, times), height) for point, height in self._paths.items()]
-        return [np.column_stack([path, np.full(len(path), height)]) for path, height in paths]
+        return [self._poses.path(point, times, height) for point, height in self._paths.items()]
 
 
 # How high things lie that are drawn over the solids: trails, labels, arrows, springs (m).

@@ -75,11 +75,13 @@ def read_film(out: Out, show: str = "", aspect: float = ASPECT) -> Film:
     ``show`` replaces the SHOW of the shot, and the film is framed for pictures of that ``aspect``, width over height.
     """
     from render.film.film import Film
-    from shared.contract import read_motion, read_parts
+    from shared.contract import Motion, read_any_motion, read_parts
     from shared.contract.geometry import with_rods
     from shared.contract.shot import read_shot, shown
 
     refuse_missing(out)
     shot = shown(read_shot(out.shot), show)
     parts = read_parts(out.parts, out.name)
-    return Film(with_rods(read_motion(out.motion, out.name), parts), parts, shot, out.parts_folder, aspect)
+    motion = read_any_motion(out.motion, out.name)
+    motion = with_rods(motion, parts) if isinstance(motion, Motion) else motion
+    return Film(motion, parts, shot, out.parts_folder, aspect)

@@ -10,7 +10,7 @@ import msgspec
 
 from render.film.scene import PieceSpec, SurfaceSpec
 from render.film.section import WHOLE, cuts_of
-from shared.contract import Motion, Parts, Piece
+from shared.contract import AnyMotion, Motion3, Parts, Piece
 from shared.contract.materials import MATERIALS
 from shared.contract.parts import Vector, Z
 from shared.contract.shot import Shot, Surface
@@ -27,14 +27,18 @@ GREY, DARKEST = 0.9, 0.14
 """Lightness of a coloured surface beside arrows, as a part of its own, and the least."""
 
 
-def piece_specs(parts: Parts, shot: Shot, folder: Path, motion: Motion | None = None) -> list[PieceSpec]:
+def piece_specs(parts: Parts, shot: Shot, folder: Path, motion: AnyMotion | None = None) -> list[PieceSpec]:
     """Return all solids of ``folder``, as far as the shot's section leaves them.
 
     ``motion`` gives the poses of bodies that a section names.
 
     Raises UserError for a material that is not known, and for a section that cuts nothing.
     """
-    cuts = cuts_of(parts, shot.section, folder, motion)
+    if isinstance(motion, Motion3):
+        _refuse_section(parts.mechanism, shot)
+        cuts = {}
+    else:
+        cuts = cuts_of(parts, shot.section, folder, motion)
     return [
         PieceSpec(
             body=body,
@@ -51,7 +55,7 @@ def piece_specs(parts: Parts, shot: Shot, folder: Path, motion: Motion | None = 
     ]
 
 
-def refuse_mismatch(motion: Motion, parts: Parts, folder: Path) -> None:
+def refuse_mismatch(motion: AnyMotion, parts: Parts, folder: Path) -> None:
     """Raise UserError unless the solids' bodies are the motion's and the files those described.
 
     The ground is left out.
@@ -59,7 +63,8 @@ def refuse_mismatch(motion: Motion, parts: Parts, folder: Path) -> None:
     name = motion.mechanism
     if parts.mechanism != name:
         raise UserError(f"parts.json is of {parts.mechanism}, data.json of {name}; make both again")
-    unknown = [body for body in parts.bodies if body not in motion.bodies and body != "ground"]
+    known_links = {name for name, body in parts.bodies.items() if body.link and body.link.joint in motion.joints}
+    unknown = [body for body in parts.bodies if body not in {*motion.bodies, *known_links, "ground"}]
     if unknown:
         raise UserError(
             f"{name}: parts.json has solids for {', '.join(unknown)}, which do not move in data.json; "
@@ -68,7 +73,7 @@ def refuse_mismatch(motion: Motion, parts: Parts, folder: Path) -> None:
     if not any(True for _ in _pieces(parts)):
         raise UserError(f"{name}: parts.json has no solids, so there is nothing to see; make the parts again")
     for body, piece_name, piece in _pieces(parts):
-        known = [*motion.joints, *motion.contacts]
+        known = [*motion.joints, *getattr(motion, "contacts", {})]
         if piece.rolls is not None and piece.rolls.joint not in known:
             raise UserError(
                 f"{name}: piece {body}/{piece_name} rolls in joint '{piece.rolls.joint}', which data.json has not; "
@@ -76,6 +81,13 @@ def refuse_mismatch(motion: Motion, parts: Parts, folder: Path) -> None:
             )
         if file_hash(folder / piece.stl) != piece.stl_sha256:
             raise UserError(f"{name}: {piece.stl} is not the file parts.json describes; make the parts again")
+
+
+def _refuse_section(mechanism: str, shot: Shot) -> None:
+    if shot.section:
+        raise UserError(
+            f"{mechanism}: shot.section cuts mechanisms in the plane; leave it out, or say which parts are transparent"
+        )
 
 
 def _pieces(parts: Parts) -> Iterator[tuple[str, str, Piece]]:

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from render.film.scene import Pose
+from render.film.solids import swept
 from shared.contract import BodyMotion, Motion
 
 # Markers of bodies along a motion.
@@ -95,6 +97,11 @@ class Quintic:
             )
 
 
+def planar_pose(x: float, y: float, theta: float) -> Pose:
+    """Return the pose of a body that has turned by the unwrapped angle ``theta`` (rad) in the plane."""
+    return x, y, 0.0, math.cos(theta / 2), 0.0, 0.0, math.sin(theta / 2)
+
+
 @dataclass(frozen=True)
 class Moment:
     """A moment of the film in the motion's own terms: time (s), and how many whole periods came before."""
@@ -135,6 +142,31 @@ class Poses:
         angles = self.motion.bodies[name].theta
         whole = round((angles[-1] - angles[0]) / math.tau) if self.motion.period is not None else 0
         return x, y, theta + math.tau * whole * at.turns
+
+    def pose(self, name: str, at: Moment) -> Pose:
+        """Return the pose of a body's frame in space; one that never moves is at the origin.
+
+        It is the same in every period, as pictures are.
+        """
+        return planar_pose(*self.body(name, Moment(at.time, 0)))
+
+    def carried(self, name: str, points: Array, times: Array) -> Array:
+        """Return all places (m * n, 3) of points (n, 3) of a body at times (m,)."""
+        return swept(points, self.over(name, times))
+
+    def is_still(self, name: str, times: Array) -> bool:
+        """Return True if a body does not move at these times."""
+        return bool(np.ptp(self.over(name, times), axis=0).max() < 1e-12)
+
+    def path(self, name: str, times: Array, height: float) -> Array:
+        """Return positions (n, 3) of a traced point whose trail lies at a ``height`` (m)."""
+        path = self.point(name, times)
+        return np.column_stack([path, np.full(len(path), height)])
+
+    def bends(self, name: str) -> Array:
+        """Return the sizes (T,) of a traced point's acceleration (m/s^2)."""
+        point = self.motion.points[name]
+        return np.hypot(point.ax, point.ay)
 
     def over(self, name: str, times: Array) -> Array:
         """Return poses (n, 3) of a body at times (n,) of the motion's first period."""

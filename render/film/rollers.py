@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from render.film.poses import Moment, Poses, moved
+from render.film.poses import Moment, Poses, moved, planar_pose
+from render.film.scene import Pose
 from render.film.vectors import at_time
 from shared.contract import ContactMotion, JointMotion, Motion, Parts, Rolling, Shape
 
@@ -159,14 +160,14 @@ class Rollers:
             if piece.rolls is not None
         ]
 
-    def poses(self, at: Moment) -> dict[str, tuple[float, float, float]]:
-        """Return x, y (m) of the axis of each and its angle (rad), by ``body/piece``."""
+    def poses(self, at: Moment) -> dict[str, Pose]:
+        """Return the pose of each, at its axis, by ``body/piece``."""
         out = {}
         for roller in self.found:
-            x, y, theta = self._poses.body(roller.body, at)
+            x, y, theta = self._poses.body(roller.body, Moment(at.time, 0))
             (u, v), c, s = roller.at, math.cos(theta), math.sin(theta)
             angle = theta + float(at_time(self._poses.time, roller.turned[:, None], at.time)[0])
-            out[f"{roller.body}/{roller.piece}"] = (x + c * u - s * v, y + s * u + c * v, angle)
+            out[f"{roller.body}/{roller.piece}"] = planar_pose(x + c * u - s * v, y + s * u + c * v, angle)
         return out
 
 

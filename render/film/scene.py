@@ -8,6 +8,8 @@ from __future__ import annotations
 from typing import Literal
 
 import msgspec
+import numpy as np
+from numpy.typing import NDArray
 
 from render.film.framing import CameraPose
 from render.looks import Look
@@ -16,6 +18,8 @@ from shared.contract.signals import Head
 
 Colour = tuple[float, float, float]
 Point = tuple[float, float, float]
+Pose = tuple[float, float, float, float, float, float, float]
+"""x, y, z (m) of a body's frame, and its unit quaternion (w, x, y, z) from body to world."""
 Plane = tuple[float, float, float, float]
 """A unit normal, and how far along it the plane is (m)."""
 Hidden = Literal["", "trails", "all"]
@@ -99,8 +103,8 @@ class ArrowSpec(msgspec.Struct, kw_only=True, frozen=True):
 class ArcSpec(msgspec.Struct, kw_only=True, frozen=True):
     """A torque that changes: a curved arrow about its centre.
 
-    The centre is in every State with its sweep (rad). ``colour`` as of an arrow; ``radius`` is that of the arc,
-    ``shaft`` and ``head`` radii of the tube and its cone, ``point`` the cone's length.
+    The centre is in every State with its sweep (rad) and its axis. ``colour`` as of an arrow; ``radius`` is that of
+    the arc, ``shaft`` and ``head`` radii of the tube and its cone, ``point`` the cone's length.
     """
 
     name: str
@@ -109,6 +113,22 @@ class ArcSpec(msgspec.Struct, kw_only=True, frozen=True):
     shaft: float
     head: float
     point: float
+
+
+STEEP = 0.98
+"""Cosine to the y axis above which an axis takes the x axis for its plane."""
+
+
+def across_axes(axes: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return x and y axes (n, 3) of planes normal to unit vectors (n, 3): of z those of the world.
+
+    The y axis points away from a camera in front, as far as it can.
+    """
+    away = np.array([0.0, 1.0, 0.0]) - axes[:, 1, None] * axes
+    steep = np.abs(axes[:, 1]) > STEEP
+    away[steep] = np.array([1.0, 0.0, 0.0]) - axes[steep, 0, None] * axes[steep]
+    y = away / np.linalg.norm(away, axis=1, keepdims=True)
+    return np.cross(y, axes), y
 
 
 class LegendRow(msgspec.Struct, kw_only=True, frozen=True):
@@ -208,15 +228,15 @@ class Scene(msgspec.Struct, kw_only=True, frozen=True):
 
 
 class State(msgspec.Struct, kw_only=True, frozen=True):
-    """The state of one frame: x, y, theta of every body; paths, places, arrows, the camera."""
+    """The state of one frame: poses of all bodies; paths, places, arrows, the camera."""
 
-    bodies: dict[str, Point]
+    bodies: dict[str, Pose]
     trails: list[list[Point]]
     labels: list[Point]
     camera: CameraPose
     tubes: list[list[Point]] = []
     arrows: list[tuple[Point, Point]] = []
-    arcs: list[tuple[Point, float]] = []
+    arcs: list[tuple[Point, float, Point]] = []
     number: str = ""
     """The number that lives, beside the title."""
     lifts: dict[str, float] = {}

@@ -32,7 +32,7 @@ class Acting:
     bodies: tuple[str, ...]
     """Between which, or on which it acts."""
     place: Array
-    """(T, 2) where an arrow begins, about which an arc is drawn (m)."""
+    """(T, 2) where an arrow begins, about which an arc is drawn (m); (T, 3) in space."""
 
 
 @dataclass(frozen=True)
@@ -40,14 +40,18 @@ class Vector(Acting):
     """One vector, world axes."""
 
     value: Array
-    """(T, 2) in the unit of its quantity."""
+    """(T, 2) in the unit of its quantity; (T, 3) in space."""
     weight: bool = False
     """True if it is the weight of a body, one of the forces."""
 
     @property
     def size(self) -> Array:
         """(T,)"""
-        return np.hypot(*self.value.T)
+        return np.hypot(*self.value.T) if self.value.shape[1] == 2 else np.linalg.norm(self.value, axis=1)
+
+    def lifted(self, z: float) -> tuple[Array, Array]:
+        """Return place and value (T, 3); one in the plane lies at the height ``z`` (m)."""
+        return lifted(self.place, z), lifted(self.value, 0.0)
 
     @property
     def unit(self) -> str:
@@ -75,6 +79,11 @@ def vectors(motion: Motion, show: Sequence[Quantity]) -> list[Vector]:
     """
     made = {"velocities": _movements, "accelerations": _movements, "forces": _forces, "reactions": _reactions}
     return [vector for quantity in show for vector in made[quantity](motion, quantity)]
+
+
+def lifted(values: Array, z: float) -> Array:
+    """Return rows (T, 3); those of the plane (T, 2) get ``z``."""
+    return values if values.shape[1] == 3 else np.column_stack([values, np.full(len(values), z)])
 
 
 def at_time(time: Array, values: Array, t: float) -> Array:
@@ -177,6 +186,11 @@ class Torque(Acting):
 
     value: Array
     """(T,) N m, positive counter-clockwise."""
+
+    @property
+    def axes(self) -> Array:
+        """(T, 3) unit vectors of the axes about which it turns."""
+        return np.tile([0.0, 0.0, 1.0], (len(self.value), 1))
 
     @property
     def size(self) -> Array:

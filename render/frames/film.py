@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from render.film.inputs import encoder_version, named, read_film, stage_key
 from render.presets import Preset, has_sound
+from shared.contract import is_in_space
 from shared.stage.console import say
 from shared.stage.files import sources_hash, write_bytes
 from shared.stage.paths import Out
@@ -25,7 +26,7 @@ def run(name: str, preset: Preset, show: str = "", sound: str = "") -> None:
     Raises UserError for another word than on or off.
     """
     out = Out(name)
-    heard = has_sound(sound)
+    heard = _is_heard(out, sound)
     stage = _stage(out, preset, show, heard)
     film = stage.outputs[0]
     if stage.is_fresh():
@@ -49,7 +50,12 @@ def run(name: str, preset: Preset, show: str = "", sound: str = "") -> None:
 
 def is_fresh(name: str, preset: Preset, show: str = "", sound: str = "") -> bool:
     """Return True if there is nothing to do. Raises UserError where motion, parts or shot are missing."""
-    return _stage(Out(name), preset, show, has_sound(sound)).is_fresh()
+    return _stage(Out(name), preset, show, _is_heard(Out(name), sound)).is_fresh()
+
+
+def _is_heard(out: Out, sound: str) -> bool:
+    """Return True for a film with sound; that of a mechanism in space has none."""
+    return has_sound(sound) and not is_in_space(out.motion)
 
 
 def wav_of(film: Path) -> Path:

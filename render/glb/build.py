@@ -74,13 +74,20 @@ def scene_of(film: Film, pieces: Sequence[PieceSpec], front: float = math.inf) -
             node["translation"] = [*piece.turns_about, 0.0]
         child = children[piece.body, piece.name] = document.add("nodes", node)
         document.json["nodes"][nodes[piece.body]]["children"].append(child)
-    for name, body in motion.bodies.items():
-        if name in nodes:
+    for name in nodes:
+        if film.in_space is not None:
+            if name != "ground":
+                place, turned = film.poses.over(name, film.poses.time[animation.kept])
+                animation.pose(nodes[name], place, turned)
+        elif name in motion.bodies:
+            body = motion.bodies[name]
             x, y, theta = (np.array(series)[animation.kept] for series in (body.x, body.y, body.theta))
             animation.place(nodes[name], np.stack([x, y, 0 * x], axis=1), theta)
     for roller in (each for each in film.rollers.found if (each.body, each.piece) in children):
         animation.turn(children[roller.body, roller.piece], roller.turned[animation.kept])
     springs = Springs(document, animation, paints, motion, front)
+    if film.in_space is not None:
+        return _finished(document, animation, film, [*nodes.values()])
     for stretched in film.stretched:
         springs.stretched(stretched)
     for spiral in film.spirals:
@@ -88,15 +95,14 @@ def scene_of(film: Film, pieces: Sequence[PieceSpec], front: float = math.inf) -
     for cable in film.cables:
         springs.cable(cable, film.poses)
     belts = [node for belt in film.belts for node in add_belt(document, animation, paints, film.poses, belt, front)]
-    root = document.add(
-        "nodes",
-        {
-            "name": motion.mechanism,
-            "rotation": list(turn(film.parts.mount.up)),
-            "children": [*nodes.values(), *springs.nodes, *belts],
-        },
-    )
-    document.add("scenes", {"name": motion.mechanism, "nodes": [root]})
+    return _finished(document, animation, film, [*nodes.values(), *springs.nodes, *belts])
+
+
+def _finished(document: Document, animation: Animation, film: Film, children: list[int]) -> tuple[Document, Animation]:
+    """Return the document with the root of its nodes, which turns what points up."""
+    name = film.motion.mechanism
+    root = {"name": name, "rotation": list(turn(film.parts.mount.up)), "children": children}
+    document.add("scenes", {"name": name, "nodes": [document.add("nodes", root)]})
     document.json["scene"] = 0
     return document, animation
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.film.scene import SurfaceSpec
-from shared.contract import Motion
+from shared.contract import AnyMotion
 
 # A glTF 2.0 document in one binary file: arrays become views of one buffer, everything else is JSON.
 #
@@ -220,7 +220,7 @@ class Animation:
     Of two times of data.json at an event it has one, because poses agree there.
     """
 
-    def __init__(self, document: Document, motion: Motion) -> None:
+    def __init__(self, document: Document, motion: AnyMotion) -> None:
         self._document = document
         time = (np.array(motion.time) - motion.time[0]).astype(np.float32)
         self.kept = np.flatnonzero(np.concatenate([[True], np.diff(np.maximum.accumulate(time)) > 0]))
@@ -269,6 +269,16 @@ class Animation:
         thing = self._document.json["nodes"][node]
         thing["translation"] = place[0].astype(np.float32).tolist()
         thing["rotation"] = turn[0].astype(np.float32).tolist()
+
+    def pose(self, node: int, place: Array, turned: Array) -> None:
+        """Move a node to places (n, 3) (m), turned by quaternions (n, 4) (w, x, y, z), whose signs go on."""
+        self.add(node, "translation", place)
+        quaternions = np.roll(turned, -1, axis=1)
+        self.tracks.append(Track(node, "rotation", quaternions))
+        self._sample(node, "rotation", quaternions)
+        thing = self._document.json["nodes"][node]
+        thing["translation"] = place[0].astype(np.float32).tolist()
+        thing["rotation"] = quaternions[0].astype(np.float32).tolist()
 
     def content(self) -> dict[str, Any]:
         """Return the animation as it stands in the document."""

@@ -14,7 +14,7 @@ from render.film.pieces import exploded
 from render.film.story.ramps import lifted
 from render.glb import glb_key
 from render.glb.build import mesh_of, turn
-from render.glb.document import CLEARCOAT, Document, Paints, about_z
+from render.glb.document import CLEARCOAT, Document, Paints
 from shared.stage.console import say
 from shared.stage.files import write_bytes
 from shared.stage.paths import Out
@@ -88,6 +88,6 @@ def _apart(time: float) -> float:
 
 def _body(document: Document, film: Film, name: str) -> int:
     """Return a node where the body is at the start of the motion."""
-    x, y, theta = film.poses.body(name, film.clock.moment(0))
-    rotation = about_z(np.array([theta]))[0].astype(np.float32).tolist()
-    return document.add("nodes", {"name": name, "translation": [x, y, 0.0], "rotation": rotation, "children": []})
+    x, y, z, w, i, j, k = film.poses.pose(name, film.clock.moment(0))
+    rotation = np.array([i, j, k, w], np.float32).tolist()
+    return document.add("nodes", {"name": name, "translation": [x, y, z], "rotation": rotation, "children": []})

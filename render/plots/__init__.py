@@ -9,7 +9,7 @@ import ast
 from pathlib import Path
 
 from render import FRAME_SOURCES
-from shared.contract import Motion, read_motion
+from shared.contract import Motion, Motion3, read_any_motion
 from shared.contract.quantity import counted
 from shared.contract.skeleton import read_skeleton
 from shared.stage.console import say
@@ -34,12 +34,17 @@ def run(name: str, spectra: str = "", every: bool = False) -> None:
     is not, unless ``every`` mechanism is asked for the same.
     """
     out = Out(name)
-    motion, skeleton = read_motion(out.motion, out.name), read_skeleton(out.skeleton)
+    motion, skeleton = read_any_motion(out.motion, out.name), read_skeleton(out.skeleton)
     if skeleton.provenance != motion.provenance:
         raise UserError(
             f"{out.name}: {out.skeleton} is of another motion than {out.motion.name}; run {to_run('solve', out.name)}"
         )
-    names = [*plots_of(motion), *_spectra(motion, out.name, spectra, every)]
+    if isinstance(motion, Motion3):
+        from render.plots.pages.space import plots_in_space
+
+        names = plots_in_space(motion)
+    else:
+        names = [*plots_of(motion), *_spectra(motion, out.name, spectra, every)]
     outputs = {plot: out.plots / f"{plot}.png" for plot in names}
     stage = _stage(out, names)
     if stage.is_fresh():

@@ -8,10 +8,11 @@ from render.plots.pages.energy import energy
 from render.plots.pages.forces import forces, frame, hodographs, reactions
 from render.plots.pages.motion import bodies, path, point, slider, turns
 from render.plots.pages.pressures import gas, hydraulics
+from render.plots.pages.space import figure_in_space
 from render.plots.pages.spectra import spectrum_page
 from render.plots.quantities import known_names
 from render.plots.style import house_style
-from shared.contract import Motion
+from shared.contract import AnyMotion, Motion, Motion3
 from shared.contract.skeleton import Skeleton
 
 
@@ -34,9 +35,11 @@ WHOLE = {
 ONE = {"point-": point, "slider-": slider, "spectrum-": spectrum_of}
 
 
-def figure(plot: str, motion: Motion, skeleton: Skeleton) -> Figure:
-    """Draw a plot: a name of :data:`WHOLE`, ``point-<P>``, ``slider-<body>`` or ``spectrum-<what>``."""
+def figure(plot: str, motion: AnyMotion, skeleton: Skeleton) -> Figure:
+    """Draw a plot: a name of :data:`WHOLE`, ``point-<P>``, ``slider-<body>``, ``spectrum-<what>``, one of space.py."""
     with house_style():
+        if isinstance(motion, Motion3):
+            return figure_in_space(plot, motion, skeleton)
         if plot == "path":
             return path(motion, skeleton)
         if plot in WHOLE:

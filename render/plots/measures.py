@@ -13,7 +13,7 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
 
 from render.insights.loops import marks
 from render.plots.style import QUIET, SIZE
-from shared.contract import Motion
+from shared.contract import AnyMotion, Motion
 from shared.contract.quantity import angle_step, figures, labelled, prefixed, written
 
 # Quantities of an axis: its words with the unit, its numbers with the prefix that they need, ticks of angles, cuts.
@@ -126,7 +126,7 @@ class Horizon:
         axes.set_xlabel(axes.get_xlabel() + self.note)
 
 
-def horizon(motion: Motion) -> Horizon:
+def horizon(motion: AnyMotion) -> Horizon:
     """Return the driver's angle in degrees, or time in s.
 
     It is time unless there is one driver, it is an angle and it never turns back. A driver that turns clockwise has its
@@ -146,7 +146,7 @@ def horizon(motion: Motion) -> Horizon:
     return Horizon(np.asarray(motion.time), "time", "s", "", margin)
 
 
-def _pace(motion: Motion, angle: np.ndarray) -> str:
+def _pace(motion: AnyMotion, angle: np.ndarray) -> str:
     """Return how long a turn takes, of a driver that turns evenly."""
     even = np.interp(motion.time, [motion.time[0], motion.time[-1]], [angle[0], angle[-1]])
     if np.abs(angle - even).max() > 1e-6 * np.ptp(angle):

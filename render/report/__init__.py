@@ -1,4 +1,4 @@
-"""report.md: what a run found, in sentences and tables: ``python -m render report NAME``."""
+"""report.md: what a run chapters, in sentences and tables: ``python -m render report NAME``."""
 
 from __future__ import annotations
 
@@ -11,9 +11,10 @@ from render.insights import insights
 from render.report import sections
 from render.report.loads import load_section
 from render.report.orders import orders_section
+from render.report.space import motion_in_space, sections_in_space
 from render.report.transmission import event_section, transmission_section
 from render.report.travel import travel_section
-from shared.contract import Motion, Parts, read_motion, read_parts
+from shared.contract import AnyMotion, Motion, Motion3, Parts, read_any_motion, read_parts
 from shared.contract.clearance import Clearance
 from shared.stage.console import say
 from shared.stage.files import sources_hash, write_bytes
@@ -31,7 +32,7 @@ def run(name: str) -> None:
     Raises UserError without data.json.
     """
     out = Out(name)
-    motion = read_motion(out.motion, out.name)
+    motion = read_any_motion(out.motion, out.name)
     parts = read_parts(out.parts, out.name) if out.parts.is_file() else None
     clearance = current_clearance(out, parts, "report")
     said = description(out.name)
@@ -56,13 +57,29 @@ def _stage(out: Out, said: str) -> Stage:
     return Stage(out, "report", key, [out.report])
 
 
-def report(motion: Motion, parts: Parts | None, clearance: Clearance | None, said: str = "") -> str:
+def report(motion: AnyMotion, parts: Parts | None, clearance: Clearance | None, said: str = "") -> str:
     """Return the whole document, Markdown."""
     title = motion.mechanism.replace("_", " ").replace("-", ": ")
     lines = [f"# {title[:1].upper()}{title[1:]}", ""]
     lines += [said, ""] if said else []
-    lines += sections.motion_section(motion)
-    for head, body in (
+    if isinstance(motion, Motion3):
+        lines += motion_in_space(motion)
+        chapters = sections_in_space(motion, parts)
+    else:
+        lines += sections.motion_section(motion)
+        chapters = _planar_sections(motion, parts, clearance)
+    for head, body in chapters:
+        if body:
+            lines += ["", f"## {head}", "", *body]
+    text = "\n".join(lines)
+    while "\n\n\n" in text:
+        text = text.replace("\n\n\n", "\n\n")
+    return text.rstrip() + "\n"
+
+
+def _planar_sections(motion: Motion, parts: Parts | None, clearance: Clearance | None) -> list[tuple[str, list[str]]]:
+    """Return headings and lines of a mechanism in the plane."""
+    return [
         ("Insights", insight_section(motion)),
         ("Travel", travel_section(motion)),
         ("Events", event_section(motion)),
@@ -74,13 +91,7 @@ def report(motion: Motion, parts: Parts | None, clearance: Clearance | None, sai
         ("Transmission", transmission_section(motion)),
         ("Masses", sections.mass_section(motion, parts)),
         ("Clearance", sections.clearance_section(clearance)),
-    ):
-        if body:
-            lines += ["", f"## {head}", "", *body]
-    text = "\n".join(lines)
-    while "\n\n\n" in text:
-        text = text.replace("\n\n\n", "\n\n")
-    return text.rstrip() + "\n"
+    ]
 
 
 def insight_section(motion: Motion) -> list[str]:

@@ -10,8 +10,9 @@ import numpy as np
 from render.insights.loops import loops
 from render.insights.stops import fastest
 from render.magnitudes import effort_floor
+from render.report.space import facts_in_space
 from render.report.written import Amounts, counted, degrees, moment, speed, written
-from shared.contract import Motion, Parts, read_motion, read_parts
+from shared.contract import AnyMotion, Motion, Motion3, Parts, read_motion, read_parts
 from shared.contract.clearance import Clearance, read_clearance
 from shared.stage.console import duration
 from shared.stage.errors import UserError
@@ -20,10 +21,12 @@ from shared.stage.paths import Out
 # Chooses the few numbers of a mechanism that fit into a line.
 
 
-def facts(motion: Motion, parts: Parts | None, clearance: Clearance | None) -> list[str]:
+def facts(motion: AnyMotion, parts: Parts | None, clearance: Clearance | None) -> list[str]:
     """Return freedoms, time, speed, effort, reaction, transmission angle, mass and clearance.
 
     Speed is that of the fastest place; effort and reaction are the largest."""
+    if isinstance(motion, Motion3):
+        return facts_in_space(motion, parts)
     span, amount = motion.time[-1] - motion.time[0], Amounts(motion)
     out = [f"{counted(motion.diagnostics.dof, 'degree')} of freedom"]
     out.append(f"repeats after {moment(motion.period)}" if motion.period else f"{moment(span)} of motion")

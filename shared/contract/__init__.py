@@ -1,11 +1,13 @@
 """Files that cross a process, and computations that both sides must share.
 
-data.json (the motion) is motion.py and loads.py, parts.json (the solids) parts.py; base.py is in both. shot.json,
-clearance.json and skeleton.json are files of their own. This module reads, checks and writes the first two.
+data.json (the motion) is motion.py and loads.py, in space space.py, parts.json (the solids) parts.py; base.py is in
+both. shot.json, clearance.json and skeleton.json are files of their own. This module reads, checks and writes the first
+two.
 """
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from shared.contract import consistency
@@ -27,6 +29,7 @@ from shared.contract.motion import (
     completed,
 )
 from shared.contract.parts import PARTS_UNITS, BodyParts, End, Held, Mass, Mount, Parts, Piece, Rolling, mounted
+from shared.contract.space import CONVENTIONS3, Motion3, refuse_unsound_space
 from shared.stage import jsonfile
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
@@ -37,6 +40,7 @@ __all__ = [
     "UNITS",
     "Action",
     "Acts",
+    "AnyMotion",
     "BodyMotion",
     "BodyParts",
     "ContactMotion",
@@ -54,6 +58,7 @@ __all__ = [
     "JointMotion",
     "Mass",
     "Motion",
+    "Motion3",
     "Mount",
     "Parts",
     "Piece",
@@ -63,7 +68,9 @@ __all__ = [
     "Shape",
     "State",
     "Vibration",
+    "is_in_space",
     "mounted",
+    "read_any_motion",
     "read_motion",
     "read_parts",
     "write_motion",
@@ -71,18 +78,41 @@ __all__ = [
 ]
 
 
-def read_motion(path: Path, mechanism: str | None = None) -> Motion:
-    """Read data.json.
+type AnyMotion = Motion | Motion3
+"""Motion of a mechanism in the plane or in space."""
 
-    Raises UserError if it is inconsistent or of another ``mechanism``.
+
+def read_motion(path: Path, mechanism: str | None = None) -> Motion:
+    """Read data.json of a planar mechanism.
+
+    Raises UserError if it is inconsistent, of another ``mechanism``, or of one in space.
     """
-    motion = jsonfile.read(path, Motion)
+    motion = read_any_motion(path, mechanism)
+    if isinstance(motion, Motion3):
+        raise UserError(
+            f"{path} is of '{motion.mechanism}', a mechanism in space, for which this is not there yet; docs/space.md "
+            "lists what is"
+        )
+    return motion
+
+
+def read_any_motion(path: Path, mechanism: str | None = None) -> Motion | Motion3:
+    """Read data.json of a mechanism in the plane or in space; raises UserError as :func:`read_motion`."""
+    motion = jsonfile.read(path, Motion3 if is_in_space(path) else Motion)
     _refuse_inconsistent(motion, path)
     _refuse_other_mechanism(motion.mechanism, mechanism, path)
-    return completed(motion)
+    return completed(motion) if isinstance(motion, Motion) else motion
 
 
-def write_motion(path: Path, motion: Motion) -> None:
+def is_in_space(path: Path) -> bool:
+    """Return True for a data.json of a mechanism in space, by its field ``space``, whole or not."""
+    try:
+        return re.search(rb'"space"\s*:\s*[^{\s]', path.read_bytes()) is not None
+    except OSError:
+        return False  # the reader says what is wrong
+
+
+def write_motion(path: Path, motion: Motion | Motion3) -> None:
     """Check and write data.json, whole."""
     _refuse_inconsistent(motion, path)
     jsonfile.write(path, motion)
@@ -116,9 +146,14 @@ def _refuse_other_mechanism(mechanism: str, expected: str | None, path: Path) ->
         )
 
 
-def _refuse_inconsistent(document: Motion | Parts, path: Path) -> None:
+def _refuse_inconsistent(document: Motion | Motion3 | Parts, path: Path) -> None:
     """Raise UserError for inconsistencies that types cannot express."""
-    if isinstance(document, Motion):
+    if isinstance(document, Motion3):
+        consistency.refuse_other_words("units", document.units, UNITS, path)
+        consistency.refuse_other_words("conventions", document.conventions, CONVENTIONS3, path)
+        consistency.refuse_inconsistent_motion(document, path)
+        refuse_unsound_space(document, path)
+    elif isinstance(document, Motion):
         consistency.refuse_other_words("units", document.units, UNITS, path)
         consistency.refuse_other_words(
             "conventions", document.conventions, CONVENTIONS_OF[document.schema_version], path

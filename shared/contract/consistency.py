@@ -16,7 +16,9 @@ import msgspec
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
-    from shared.contract import Motion, Mount, Parts
+    from shared.contract import Motion, Motion3, Mount, Parts
+    from shared.contract.motion import BodyMotion
+    from shared.contract.space import BodyMotion3
 
 SPAN_TOLERANCE = 1e-9
 """Largest difference between the period and the time spanned, relative."""
@@ -26,6 +28,8 @@ UNIT_TOLERANCE = 1e-9
 """Tolerance of the length of a unit vector."""
 _NO_SERIES = {"redundant", "events", "start_changes", "notes", "shape", "indicated_work", "order", "harmonics"}
 """Fields with lists that are not of time."""
+PLANE, PLACE, QUATERNION = ("x", "y", "theta"), ("x", "y", "z"), ("qw", "qx", "qy", "qz")
+"""Series that place a body, in the plane and in space."""
 _UNFIT = re.compile(r"[/\\\x00-\x1f\x7f]")
 """Characters that no name of a body, joint, driver or point may hold, as files are named after it."""
 
@@ -39,34 +43,27 @@ def refuse_other_words(field: str, words: Mapping[str, str], expected: Mapping[s
             raise UserError(f"{path}: {field}.{key} is {said}, this program reads {reads}; make the file again")
 
 
-def refuse_inconsistent_motion(motion: Motion, path: Path | str) -> None:
+def refuse_inconsistent_motion(motion: Motion | Motion3, path: Path | str) -> None:
     """Raise UserError for inconsistent series, times, period or bodies.
 
     Series must not be ragged, times must rise, the period must be the time spanned, and bodies must be known.
     """
     _refuse_ragged(motion, path)
-    _refuse_unfit_names(
-        {
-            "bodies": motion.bodies,
-            "joints": motion.joints,
-            "drivers": motion.drivers,
-            "points": motion.points,
-            "forces": motion.forces,
-            "contacts": motion.contacts,
-        },
-        path,
-    )
+    named = ("bodies", "joints", "drivers", "points", "forces", "contacts")
+    _refuse_unfit_names({field: getattr(motion, field, {}) for field in named}, path)
     known = {"ground", *motion.bodies}
     if "ground" in motion.bodies:
         raise UserError(f"{path}: bodies has 'ground', which does not move; leave it out")
     used = [(f"joints.{name}.bodies", body) for name, joint in motion.joints.items() for body in joint.bodies]
     used += [(f"points.{name}.body", point.body) for name, point in motion.points.items()]
-    used += _bodies_of_loads(motion)
+    used += _bodies_in_space(motion) if motion.schema_version == 4 else _bodies_of_loads(motion)
     for field, body in used:
         if body not in known:
             raise UserError(f"{path}: {field} names '{body}', which is no body; there is: {', '.join(sorted(known))}")
     _refuse_wrong_period(motion, path)
     _refuse_wrong_events(motion, path)
+    if motion.schema_version == 4:
+        _refuse_unknown_joints(motion, path)
     if motion.schema_version == 1:
         newer = [field for field in ("forces", "contacts", "start_changes") if getattr(motion, field)]
         if newer:
@@ -115,6 +112,12 @@ def refuse_inconsistent_parts(parts: Parts, path: Path | str) -> None:
 def refuse_wrong_mount(mount: Mount, where: str) -> None:
     """Raise UserError for a wrong direction up: z on a desk, else a unit vector in the plane."""
     x, y, z = mount.up
+    if mount.kind == "bench":
+        if (x, y, z) != (0.0, 0.0, 1.0) and not (z == 0.0 and abs(math.hypot(x, y) - 1.0) < UNIT_TOLERANCE):
+            raise UserError(
+                f"{where}: up is ({x:g}, {y:g}, {z:g}); on a bench it is (0, 0, 1), or a unit vector of x, y"
+            )
+        return
     if mount.kind == "desk" and (x, y, z) != (0.0, 0.0, 1.0):
         raise UserError(f"{where}: up is ({x:g}, {y:g}, {z:g}); on a desk it is (0, 0, 1)")
     if mount.kind != "desk" and not (z == 0.0 and abs(math.hypot(x, y) - 1.0) < UNIT_TOLERANCE):
@@ -143,7 +146,27 @@ def _bodies_of_loads(motion: Motion) -> list[tuple[str, str]]:
     return used
 
 
-def _refuse_wrong_events(motion: Motion, path: Path | str) -> None:
+def _bodies_in_space(motion: Motion3) -> list[tuple[str, str]]:
+    """Return the fields of forces and drivers in space that name a body, each with that name."""
+    loads = [
+        (f"{field}.{name}.bodies", load)
+        for field in ("drivers", "forces")
+        for name, load in getattr(motion, field).items()
+    ]
+    return [(field, body) for field, load in loads for body in load.bodies]
+
+
+def _refuse_unknown_joints(motion: Motion3, path: Path | str) -> None:
+    """Raise UserError for a driver whose joint there is not."""
+    for name, driver in motion.drivers.items():
+        if driver.joint is not None and driver.joint not in motion.joints:
+            raise UserError(
+                f"{path}: drivers.{name}.joint names '{driver.joint}', which is no joint; there is: "
+                f"{', '.join(motion.joints) or 'none'}"
+            )
+
+
+def _refuse_wrong_events(motion: Motion | Motion3, path: Path | str) -> None:
     """Raise UserError unless events are in the order of their times, within the motion."""
     first, last = motion.time[0], motion.time[-1]
     for index, event in enumerate(motion.events):
@@ -165,7 +188,7 @@ def _refuse_unfit_names(names: Mapping[str, Iterable[str]], path: Path | str) ->
                 )
 
 
-def _refuse_ragged(motion: Motion, path: Path | str) -> None:
+def _refuse_ragged(motion: Motion | Motion3, path: Path | str) -> None:
     """Raise UserError unless every series is as long as ``time``.
 
     Time has two values or more and grows, but for both rows of an event.
@@ -190,10 +213,10 @@ def _refuse_ragged(motion: Motion, path: Path | str) -> None:
             _refuse_leap(motion, index, path)
 
 
-def _refuse_leap(motion: Motion, index: int, path: Path | str) -> None:
+def _refuse_leap(motion: Motion | Motion3, index: int, path: Path | str) -> None:
     """Raise UserError if a pose jumps at an event; velocities may."""
     for name, body in motion.bodies.items():
-        for field, series in (("x", body.x), ("y", body.y), ("theta", body.theta)):
+        for field, series in _pose(body):
             before, now = series[index - 1 : index + 1]
             if abs(now - before) > RETURN_TOLERANCE * max(1.0, abs(before)):
                 raise UserError(
@@ -202,7 +225,7 @@ def _refuse_leap(motion: Motion, index: int, path: Path | str) -> None:
                 )
 
 
-def _refuse_wrong_period(motion: Motion, path: Path | str) -> None:
+def _refuse_wrong_period(motion: Motion | Motion3, path: Path | str) -> None:
     """Raise UserError unless the period is the time spanned, and every pose returns after it.
 
     Angles may differ by whole turns.
@@ -216,8 +239,9 @@ def _refuse_wrong_period(motion: Motion, path: Path | str) -> None:
             "or null for a motion that does not repeat"
         )
     for name, body in motion.bodies.items():
-        for field, series in (("x", body.x), ("y", body.y), ("theta", body.theta)):
-            gap = series[-1] - series[0]
+        sign = _sign_after_period(body)
+        for field, series in _pose(body):
+            gap = (sign if field in QUATERNION else 1.0) * series[-1] - series[0]
             if field == "theta":
                 gap = math.remainder(gap, math.tau)
             if abs(gap) > RETURN_TOLERANCE * max(1.0, abs(series[0])):
@@ -225,6 +249,19 @@ def _refuse_wrong_period(motion: Motion, path: Path | str) -> None:
                     f"{path}: bodies.{name}.{field} begins at {series[0]:.6g} and ends at {series[-1]:.6g}, though "
                     f"period is {motion.period:.6g} s; make it null for a motion that does not repeat"
                 )
+
+
+def _pose(body: BodyMotion | BodyMotion3) -> list[tuple[str, list[float]]]:
+    """Return the series that place a body, with their fields."""
+    fields = PLANE if hasattr(body, "theta") else (*PLACE, *QUATERNION)
+    return [(field, getattr(body, field)) for field in fields]
+
+
+def _sign_after_period(body: BodyMotion | BodyMotion3) -> float:
+    """Return -1 where a quaternion at the end of a period is nearer to the negative one of its start, else 1."""
+    if hasattr(body, "theta"):
+        return 1.0
+    return math.copysign(1.0, sum(series[0] * series[-1] for field, series in _pose(body) if field in QUATERNION))
 
 
 def _series(value: Any, field: str) -> Iterator[tuple[str, list[Any]]]:
@@ -236,7 +273,7 @@ def _series(value: Any, field: str) -> Iterator[tuple[str, list[Any]]]:
     elif isinstance(value, dict):
         for name, item in value.items():
             yield from _series(item, f"{field}.{name}")
-    elif isinstance(value, list) and field.endswith(".actions"):
+    elif isinstance(value, list) and field.endswith((".actions", ".rows")):
         for index, item in enumerate(value):
             yield from _series(item, f"{field}[{index}]")
     elif isinstance(value, list):

@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 import msgspec
 
 from shared.contract.base import UNITS, Count, NonNegative, Positive, Provenance, Strict
+from shared.stage.errors import UserError
 
 # Mount of a mechanism's ground: on a desk, on a stand, at a wall or on the ground.
 #
@@ -16,8 +17,11 @@ from shared.contract.base import UNITS, Count, NonNegative, Positive, Provenance
 
 type Vector = tuple[float, float, float]
 Kind = Literal["desk", "stand", "wall", "ground"]
+"""How an author may have a mechanism in the plane stand."""
 Z: Vector = (0.0, 0.0, 1.0)
 Y: Vector = (0.0, 1.0, 0.0)
+LEVEL = 1e-9
+"""Sine of the angle below which a pull is along an axis."""
 
 
 class Mount(msgspec.Struct, forbid_unknown_fields=True, kw_only=True, frozen=True):
@@ -25,10 +29,11 @@ class Mount(msgspec.Struct, forbid_unknown_fields=True, kw_only=True, frozen=Tru
 
     ``desk``: its base lies on a desk, and ``up`` is the normal of the plane, (0, 0, 1). For the others ``up`` is in the
     plane, against gravity. ``stand``: its base is a back plate on a foot. ``wall``: the back plate hangs at a wall.
-    ``ground``: the road, terrain or floor of the model is the ground on which it stands.
+    ``ground``: the road, terrain or floor of the model is the ground on which it stands. ``bench``: a mechanism in
+    space stands with its base on a bench, ``up`` against gravity.
     """
 
-    kind: Kind = "desk"
+    kind: Literal["desk", "stand", "wall", "ground", "bench"] = "desk"
     up: Vector = Z
     """Unit vector of the world."""
 
@@ -50,13 +55,31 @@ def mounted(gravity: tuple[float, float], kind: Kind | None = None, runs_on_grou
     return Mount(kind=kind, up=(x, y, 0.0))
 
 
+def mounted_in_space(mechanism: str, gravity: Vector) -> Mount:
+    """Return the mount of a mechanism in space under this ``gravity`` (m/s^2).
+
+    Raises UserError for a pull that is neither along z nor across it.
+    """
+    x, y, z = (0.0 - component for component in gravity)
+    pull = math.hypot(x, y, z)
+    if pull == 0.0 or (math.hypot(x, y) < LEVEL * pull and z > 0.0):
+        return Mount(kind="bench")
+    if abs(z) > LEVEL * pull:
+        raise UserError(
+            f"{mechanism}: gravity pulls along ({-x:g}, {-y:g}, {-z:g}); pictures stand upright where it pulls along "
+            "-z, or along a direction of the x-y plane. Turn the axes of mechanism.py"
+        )
+    flat = math.hypot(x, y)
+    return Mount(kind="bench", up=(x / flat, y / flat, 0.0))
+
+
 PARTS_UNITS = UNITS | {"stl, step": "mm"}
 
 
 class Mass(Strict, kw_only=True, omit_defaults=True):
     """Mass properties: kg, centre of mass (m, body frame), inertia about it (kg m^2), volume (m^3).
 
-    ``z`` and ``products`` are there where z of the solids is that of the model.
+    ``z`` and ``products`` are there where z of the solids is that of the model, ``tensor`` in space.
     """
 
     mass: NonNegative
@@ -67,6 +90,8 @@ class Mass(Strict, kw_only=True, omit_defaults=True):
     """Height of the centre of mass, along the normal of the plane (m)."""
     products: tuple[float, float] | None = None
     """Integrals of x z dm and y z dm about the centre of mass, in the body's frame (kg m^2)."""
+    tensor: tuple[float, float, float, float, float, float] | None = None
+    """xx, yy, zz, xy, xz, yz of the inertia about the centre of mass, in axes of the body's frame (kg m^2)."""
 
 
 class Held(Strict, kw_only=True):
@@ -116,6 +141,18 @@ class End(Strict, kw_only=True):
     y: float
 
 
+class Link(Strict, kw_only=True):
+    """Massless link of a joint in space.
+
+    Its frame is at the place of the joint's first marker. The x axis of a rod goes to the second place, and its z axis
+    is as near as can be to ``z`` of ``body``; x and y of a cross are the axes of both markers.
+    """
+
+    joint: str
+    body: str
+    z: Vector
+
+
 class BodyParts(Strict, kw_only=True):
     """All pieces that move with one body, and their mass together. ``ground`` is the frame."""
 
@@ -126,6 +163,8 @@ class BodyParts(Strict, kw_only=True):
     spans: tuple[End, End] | None = None
     """Ends of a rod, which is no body of data.json: places of the bodies it joins. Its frame is at the first, its x
     axis goes to the second (shared/contract/parts.py). Null of bodies."""
+    link: Link | msgspec.UnsetType = msgspec.UNSET
+    """Joint in space whose massless link this is: a rod or a cross, no body of data.json. Left out of bodies."""
 
 
 class Parts(Strict, kw_only=True):

@@ -13,7 +13,7 @@ from typing import Annotated, Literal, get_args
 
 import msgspec
 
-from shared.contract import Motion, Parts
+from shared.contract import AnyMotion, Parts
 from shared.contract.materials import MATERIALS
 from shared.contract.parts import Kind
 from shared.stage import jsonfile
@@ -264,11 +264,12 @@ class Names:
     """Drivers, forces and contacts."""
 
     @classmethod
-    def from_motion(cls, motion: Motion, parts: Parts) -> Names:
+    def from_motion(cls, motion: AnyMotion, parts: Parts) -> Names:
         """Return the names in a motion and its parts."""
         pieces = {body: tuple(solids.pieces) for body, solids in parts.bodies.items()}
-        forces = [name for name, force in motion.forces.items() if force.effort is not None]
-        efforts, acting = (*motion.drivers, *forces), (*motion.drivers, *motion.forces, *motion.contacts)
+        forces = [name for name, force in motion.forces.items() if getattr(force, "effort", ()) is not None]
+        contacts = getattr(motion, "contacts", {})
+        efforts, acting = (*motion.drivers, *forces), (*motion.drivers, *motion.forces, *contacts)
         return cls(motion.mechanism, tuple(motion.joints), tuple(motion.points), pieces, efforts, acting)
 
     def listed(self) -> tuple[object, ...]:

@@ -34,6 +34,11 @@ class Bodies(dict[str, list[Solid]]):
         super().__init__(*args, **bodies)
         self.along = False
         """True if heights of the solids are the places z of the model, so that what masses have along z counts."""
+        self.space = False
+        """True of a mechanism in space: masses have their whole inertia."""
+        self.links: dict[str, tuple[str, str, tuple[float, float, float]]] = {}
+        """Joint in space whose massless link each of these is, the body to which its z axis is nearly fixed, and where
+        that axis points in the body's frame (shared/contract/parts.py)."""
         self.stand: Callable[[Mapping[str, list[Solid]]], list[Solid]] | None = None
         """Makes the solids of ground with a stand, once all solids are there; None where ground has what it needs."""
         self.mount: tuple[str, tuple[float, float, float]] | None = None
@@ -134,6 +139,8 @@ class Bodies(dict[str, list[Solid]]):
                 joined._left_out |= operand.left_out
                 joined._rods |= operand.rods
                 joined.along |= operand.along
+                joined.space |= operand.space
+                joined.links |= operand.links
                 joined.notes = list(dict.fromkeys([*joined.notes, *operand.notes]))
                 joined.mount = joined.mount or operand.mount
                 joined.stand = joined.stand or operand.stand

@@ -200,6 +200,22 @@ def mechanism_names() -> list[str]:
     return [name for name in _names() if NAME.fullmatch(name) and name not in RESERVED]
 
 
+def planar_names() -> list[str]:
+    """Return the mechanisms in the plane: pages, sites and some tests have no others yet."""
+    return planar_among(mechanism_names())
+
+
+def planar_among(names: Iterable[str]) -> list[str]:
+    """Return those of some mechanisms whose mechanism.py does not import mbsd.spatial, read without running it."""
+    return [name for name in names if not imports_space(mechanism_file(name))]
+
+
+def imports_space(file: Path) -> bool:
+    """Return True if a mechanism.py imports mbsd.spatial; it need not parse."""
+    text = file.read_text("utf-8", errors="replace")
+    return re.search(r"^\s*(from|import)\s+mbsd\.spatial\b", text, re.MULTILINE) is not None
+
+
 def all_mechanisms() -> list[str]:
     """Return :func:`mechanism_names`. Raises UserError saying where none are and how to add one."""
     names, unfit = mechanism_names(), unfit_names()

@@ -206,7 +206,7 @@ def versions(*packages: str) -> dict[str, str]:
 
 def contract_sources(*more: str) -> list[Path]:
     """Return files that define data.json and parts.json, and ``more`` of ``shared/contract``: for keys."""
-    names = ("__init__", "base", "loads", "motion", "parts", *more)
+    names = ("__init__", "base", "loads", "motion", "parts", "space", *more)
     others = [ROOT / "mbsd" / "base" / "quantity.py"] if "quantity" in more else []
     files = [ROOT / "shared" / "contract" / f"{name}.py" for name in names]
     return [ROOT / "shared" / "stage" / "jsonfile.py", *files, *others]

@@ -13,7 +13,7 @@ import pytest
 import mechanisms
 from mechanisms.stages.loading import inputs, loading
 from shared.stage import paths
-from shared.stage.paths import ROOT, mechanism_folder, mechanism_names, variants_in
+from shared.stage.paths import ROOT, mechanism_folder, planar_names, variants_in
 
 HEAD = "from pathlib import Path\nfrom shared.shot import Shot\nHERE = Path(__file__).parent\n"
 
@@ -90,5 +90,5 @@ class Author:
 
 def folders_and_variants() -> list[str]:
     """Return names of all mechanisms, each followed by those of its variants."""
-    files = {owner: mechanism_folder(owner) / "mechanism.py" for owner in mechanism_names()}
+    files = {owner: mechanism_folder(owner) / "mechanism.py" for owner in planar_names()}
     return [name for owner, file in files.items() for name in (owner, *(f"{owner}-{v}" for v in variants_in(file)))]

@@ -19,7 +19,7 @@ from render.frames.story.telling import telling_of
 from render.presets import PRESETS, WIDE
 from shared import contract
 from shared.contract.shot import Names, read_shot, refuse_unknown
-from shared.stage.paths import Out, mechanism_names
+from shared.stage.paths import Out, planar_names
 from tests.mechanisms.author_project import folders_and_variants
 from tests.render.filling import boxes, filled, refuse_overlaps
 from tests.render.glb_file import GlbFile
@@ -51,7 +51,7 @@ SLOW = {
 
 @pytest.fixture(
     scope="module",
-    params=[pytest.param(name, marks=[pytest.mark.slow] if name in SLOW else []) for name in mechanism_names()],
+    params=[pytest.param(name, marks=[pytest.mark.slow] if name in SLOW else []) for name in planar_names()],
 )
 def products(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, warm: Warm) -> tuple[str, Path]:
     """All stages before the pictures, run as a user runs them."""

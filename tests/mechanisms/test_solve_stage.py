@@ -24,7 +24,7 @@ from mechanisms.stages.solve.motion_file import to_motion
 from mechanisms.stages.solve.stage import solve
 from shared import contract
 from shared.stage.errors import UserError
-from shared.stage.paths import mechanism_names
+from shared.stage.paths import planar_names
 from tests.mechanisms.author_project import Author
 
 # Masses from parts to model, what is refused, and the motion as the contract has it.
@@ -234,7 +234,7 @@ def forget() -> None:
 
 
 @pytest.mark.filterwarnings("ignore")
-@pytest.mark.parametrize("name", mechanism_names())
+@pytest.mark.parametrize("name", planar_names())
 def test_digits_are_those_of_one_built_so(name: str) -> None:
     tried = 0
     for thing, number in numbers(built(name)):

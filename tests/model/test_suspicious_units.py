@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from mbsd import Mechanism, ModelWarning, constant_rate, cycloidal, harmonic
 from mbsd.analyses.findings import Finding
 from mbsd.saving.document import build, document
-from shared.stage.paths import mechanism_names
+from shared.stage.paths import planar_names
 from tools.models.linkages import four_bar
 from tools.random_mechanisms import linkages
 
@@ -204,7 +204,7 @@ def test_one_length_in_another_unit_is_always_found(lengths: dict[str, float], w
     assert [finding.name for finding in findings if "long beside" in finding.problem] == [wrong]
 
 
-@pytest.mark.parametrize("name", mechanism_names())
+@pytest.mark.parametrize("name", planar_names())
 def test_the_mechanisms_of_the_project_pass(name: str) -> None:
     module = importlib.import_module(f"mechanisms.{name}.mechanism")
     assert [finding for finding in module.build(module.Params()).check() if not finding.is_note] == []

@@ -17,6 +17,7 @@ from shared.stage import jsonfile
 from shared.stage.paths import ROOT
 from tests.running.make import run
 from tests.shared.test_contract import parts_document
+from tests.shared.test_space_motion import MOTION as MOTION_IN_SPACE
 from tools import check, schema
 from tools.models.motions import four_bar_motion, plain_skeleton
 
@@ -83,6 +84,7 @@ DOCUMENTS = {
     "motion": four_bar_motion(steps=3),
     "parts": parts_document(),
     "clearance": CLEARANCE,
+    "motion3": MOTION_IN_SPACE,
     "shot": Shot(),
     "skeleton": plain_skeleton(four_bar_motion(steps=12)),
 }

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from shared.stage.paths import ROOT, mechanism_names
+from shared.stage.paths import ROOT, planar_names
 from tests.mechanisms.test_mechanisms import SLOW
 from tests.running import order
 from tests.running.order import group_of, place_of
@@ -40,7 +40,7 @@ def test_files_that_are_not_known_to_be_long_come_before_every_folder_and_no_gro
     ]
     pytest.main(["--collect-only", "-q", "-p", "no:cacheprovider", *files], plugins=[seen])
     groups = list(dict.fromkeys(group_of(item.nodeid) for item in seen.items))
-    folders = {f"tests/mechanisms/test_mechanisms.py[{name}]" for name in mechanism_names()}
+    folders = {f"tests/mechanisms/test_mechanisms.py[{name}]" for name in planar_names()}
     assert groups[:2] == ["tests/project/test_rooms.py", "tests/project/test_schedule.py"]
     assert set(groups[2:]) == {*folders, "tests/mechanisms/test_mechanisms.py"}, "a file's other tests are one group"
     assert len(groups) == 3 + len(folders), "no group is torn apart"
@@ -56,7 +56,7 @@ def test_quick_groups_keep_their_order_and_long_ones_are_longest_first() -> None
 def test_the_recorded_groups_exist_and_are_long() -> None:
     for group, seconds in order.recorded().items():
         assert (ROOT / group.partition("[")[0]).is_file(), f"{group} is gone; take it out of tests/running/seconds.json"
-        assert "[" not in group or group.partition("[")[2].rstrip("]") in mechanism_names(), group
+        assert "[" not in group or group.partition("[")[2].rstrip("]") in planar_names(), group
         assert seconds >= order.LONG
 
 
@@ -89,7 +89,7 @@ def test_fast_are_quick_files_of_rooms_that_start_no_program() -> None:
 
 def test_slow_folders_exist_and_each_target_has_its_tests() -> None:
     """`make test` and `make test-slow`, which choose by one mark, together run every test once."""
-    assert set(mechanism_names()) > SLOW
+    assert set(planar_names()) > SLOW
     seen = _Seen()
     files = [str(TESTS / "mechanisms" / "test_mechanisms.py"), str(TESTS / "project" / "test_rooms.py")]
     pytest.main(["--collect-only", "-q", "-p", "no:cacheprovider", *files], plugins=[seen])

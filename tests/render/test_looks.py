@@ -20,7 +20,7 @@ from render.view.solid import looks_of
 from shared.contract.parts import Kind, mounted
 from shared.contract.shot import LookName
 from shared.stage.errors import UserError
-from shared.stage.paths import ROOT, Out, mechanism_names
+from shared.stage.paths import ROOT, Out, planar_names
 
 MOST = 1 / 3
 """Part of the gallery that may have one look."""
@@ -63,7 +63,7 @@ def test_facts_of_the_files_choose_the_look(mount: Kind, engine: bool, driven: b
 
 def test_no_look_has_more_than_a_third_of_the_gallery():
     looks: Counter[str] = Counter()
-    names = mechanism_names()
+    names = planar_names()
     for name in names:
         looks.update(_possible(name))
     assert len(looks) == len(LOOKS)

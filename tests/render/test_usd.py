@@ -178,7 +178,7 @@ def test_belts_and_chains_run_as_in_the_glb(out_root: Path, teeth: tuple[int, in
     belt, poses = filmed(drive(teeth=teeth))
     no: list[Any] = []
     film: Any = SimpleNamespace(
-        motion=poses.motion, poses=poses, belts=[belt], cables=no, stretched=no, spirals=no,
+        motion=poses.motion, poses=poses, in_space=None, belts=[belt], cables=no, stretched=no, spirals=no,
         parts=SimpleNamespace(mount=Mount()),
         scene=SimpleNamespace(pieces=no), cut=(), rollers=SimpleNamespace(found=no),
     )  # fmt: skip

@@ -13,7 +13,7 @@ import pytest
 from mbsd import Mechanism
 from mechanisms.stages.loading import loading
 from mechanisms.stages.solve import solving
-from shared.stage.paths import mechanism_names
+from shared.stage.paths import planar_names
 
 # The tests of published cases, run with an eye on what the solver gives them.
 
@@ -75,7 +75,7 @@ def published(only: str, measure: Callable[[Any], Any]) -> Iterator[tuple[str, A
 
 def runs() -> Iterator[tuple[str, Callable[[], Any]]]:
     """By name."""
-    for name in mechanism_names():
+    for name in planar_names():
         yield f"gallery {name}", partial(_motion, name)
 
 

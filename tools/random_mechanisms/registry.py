@@ -14,7 +14,7 @@ from mbsd.model.joint import CONTACT_KINDS, KINDS
 from mbsd.model.laws.examples import EXAMPLES
 from mechanisms.stages.loading import loading
 from mechanisms.stages.solve import solving
-from shared.stage.paths import mechanism_names
+from shared.stage.paths import planar_names
 from tools.random_mechanisms.subject import Builder, Subject, attempt, family
 
 # The example of every kind in the solver's registries, so that a new kind is hunted without being named here.
@@ -157,5 +157,5 @@ def _builder(name: str) -> Builder:
     return lambda rng: subject_of(name, rng)
 
 
-for _name in mechanism_names():
+for _name in planar_names():
     family(f"gallery {_name}", WEIGHT)(_builder(_name))

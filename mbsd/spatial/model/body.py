@@ -54,6 +54,18 @@ class Marker(Suggesting):
         return f"<Marker ({', '.join(f'{x:g}' for x in self.place)}) on {self.body.name}>"
 
 
+@dataclass(frozen=True)
+class Shape:
+    """The round solid that a body was added as: pictures and parts show it."""
+
+    kind: str
+    """rod, disc or ball."""
+    radius: float
+    """m; 0 of a slender rod."""
+    length: float = 0.0
+    """Along the x axis of the body's frame (m): from its origin on of a rod, about it of a disc."""
+
+
 @dataclass(frozen=True, eq=False)
 class Body(Suggesting):
     """A rigid body and the pose of its frame in the design. Ground is body 0 and never moves."""
@@ -74,6 +86,7 @@ class Body(Suggesting):
     """Origin of the frame in the world, in the design pose (m)."""
     orientation: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
     """Euler parameters (w, x, y, z) of the frame in the design pose, from body to world."""
+    shape: Shape | None = None
 
     @cached_property
     def rotation(self) -> np.ndarray:
@@ -89,6 +102,14 @@ class Body(Suggesting):
         moments, axes = np.linalg.eigh(inertia)
         axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
         return moments, axes
+
+    def weigh(
+        self, mass: float, com: tuple[float, float, float], inertia: tuple[tuple[float, float, float], ...]
+    ) -> None:
+        """Set the numbers of the body's mass, which solids tell after it was added; its frame stays."""
+        for name, value in (("mass", mass), ("com", com), ("inertia", inertia)):
+            object.__setattr__(self, name, value)
+        self.__dict__.pop("principal", None)
 
     def marker(self, place: Place, axis: Direction = (0.0, 0.0, 1.0), across: Direction | None = None) -> Marker:
         """Return the frame at ``place`` on this body (m), z along ``axis``, x near ``across``."""

@@ -22,6 +22,8 @@ from mbsd.spatial.model.body import (
     Marker,
     Orientation,
     Place,
+    Shape,
+    direction_given,
     inertia_given,
     mass_given,
     orientation_given,
@@ -113,7 +115,8 @@ class Model(Suggesting):
             raise ModelError(f"{what} has radius {radius:g} m; it cannot be negative")
         inertia = inertia_given(f"{what}: inertia", cylinder(mass_given(f"{what}: mass", mass), radius, length))
         orientation = along_x((last - first) / length)
-        return self._add_body(name, mass, (length / 2, 0.0, 0.0), inertia, start, orientation)
+        shape = Shape("rod", radius, length)
+        return self._add_body(name, mass, (length / 2, 0.0, 0.0), inertia, start, orientation, shape)
 
     def shaft(
         self, name: str, start: Place, end: Place, radius: float, mass: float | None = None, density: float = 7850.0
@@ -130,14 +133,27 @@ class Model(Suggesting):
         radius = positive_number(f"{self.name}: radius of body '{name}'", radius, "m")
         what = f"{self.name}: body '{name}'"
         inertia = inertia_given(f"{what}: inertia", cylinder(mass_given(f"{what}: mass", mass), radius, thickness))
-        return self._add_body(name, mass, (0.0, 0.0, 0.0), inertia, centre, along_x(np.array(axis, float)))
+        turned = along_x(np.array(direction_given(f"{what}: axis", axis)))
+        shape = Shape("disc", radius, thickness)
+        return self._add_body(name, mass, (0.0, 0.0, 0.0), inertia, centre, turned, shape)
 
     def ball(self, name: str, centre: Place, radius: float, mass: float = 0.0) -> Body:
         """Add a solid ball; its frame is at ``centre`` (m) in the design pose, with the axes of the world."""
         radius = positive_number(f"{self.name}: radius of body '{name}'", radius, "m")
         what = f"{self.name}: body '{name}'"
         inertia = inertia_given(f"{what}: inertia", ball(mass_given(f"{what}: mass", mass), radius))
-        return self._add_body(name, mass, (0.0, 0.0, 0.0), inertia, centre, (1.0, 0.0, 0.0, 0.0))
+        turned, shape = (1.0, 0.0, 0.0, 0.0), Shape("ball", radius)
+        return self._add_body(name, mass, (0.0, 0.0, 0.0), inertia, centre, turned, shape)
+
+    def set_mass(self, name: str, mass: float, com: Place, inertia: Sequence[float] | np.ndarray) -> None:
+        """Set mass (kg), centre of mass (m, the body's frame) and inertia about it (kg m^2), as from CAD."""
+        body = own_body(self, name, f"{self.name}: body '{name}'")
+        what = f"{self.name}: body '{body.name}'"
+        body.weigh(
+            mass_given(f"{what}: mass", mass),
+            place_given(f"{what}: com", com),
+            inertia_given(f"{what}: inertia", inertia),
+        )
 
     def trace(self, name: str, body: Fixing, at: Place | None = None) -> Marker:
         """Trace a point of a body, ``at`` a place of the world in the design pose (m), or a marker."""
@@ -194,13 +210,13 @@ class Model(Suggesting):
 
     def _add_body(
         self, name: str, mass: float, com: Place, inertia: tuple[tuple[float, float, float], ...], at: Place,
-        orientation: Orientation,
+        orientation: Orientation, shape: Shape | None = None,
     ) -> Body:  # fmt: skip
         self.refuse_name(name, "body", self.bodies)
         what = f"{self.name}: body '{name}'"
         turned = orientation_given(f"{what}: orientation", orientation)
         com, at = place_given(f"{what}: com", com), place_given(f"{what}: at", at)
-        body = self.bodies[name] = Body(name, self.name, mass, com, inertia, at, turned)
+        body = self.bodies[name] = Body(name, self.name, mass, com, inertia, at, turned, shape)
         return body
 
 

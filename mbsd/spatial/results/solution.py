@@ -24,6 +24,7 @@ from mbsd.base.errors import ModelError
 from mbsd.base.names import Suggesting, no_such
 from mbsd.base.quantity import counted
 from mbsd.model.event import Happening
+from mbsd.results.solution import RETURNED
 from mbsd.results.views import DriverView, EnergyView, Mobility, Stats
 from mbsd.spatial.model.body import Marker
 from mbsd.spatial.model.joint import Joint
@@ -175,6 +176,15 @@ class Solution(Suggesting):
             for push, x in zip(force.pushes, values.T, strict=True):
                 potential = potential + 0.5 * push.stiffness * (x - push.free) ** 2
         return EnergyView(kinetic, potential)
+
+    @cached_property
+    def period(self) -> float | None:
+        """The time spanned (s) if all poses, velocities and accelerations return to those of the start; else None."""
+        first, last = (self.q[k, 3:].reshape(-1, 7).copy() for k in (0, -1))
+        last[:, 3:] *= np.where((first[:, 3:] * last[:, 3:]).sum(axis=1, keepdims=True) < 0.0, -1.0, 1.0)
+        pairs = ((first, last), (self.v[0], self.v[-1]), (self.a[0], self.a[-1]))
+        gaps = (np.abs(end - start).max() <= RETURNED * max(1.0, float(np.abs(start).max())) for start, end in pairs)
+        return float(self.t[-1] - self.t[0]) if all(gaps) else None
 
     @cached_property
     def stats(self) -> Stats:

@@ -9,7 +9,9 @@ import msgspec
 from mechanisms.stages.loading.wishes import wished_scale
 from mechanisms.stages.solve.masses import bare_solution, depends_on_masses, leaves_masses
 from mechanisms.stages.solve.solving import model_of
+from mechanisms.stages.solve.space.running import is_in_space
 from shared.contract import Mount, consistency, mounted
+from shared.contract.parts import mounted_in_space
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
 
@@ -64,6 +66,9 @@ def mount_of(name: str, bodies: Any, wish: Kind | None) -> Mount:
 
     Raises UserError for one that parts() says and that cannot be.
     """
+    if getattr(bodies, "mount", None) is None and getattr(bodies, "space", False):
+        in_space: Any = model_of(name)[0]
+        return mounted_in_space(name, in_space.gravity)
     if follows_gravity(bodies, wish):
         return mounted(model_of(name)[0].gravity or (0.0, 0.0), wish)
     said = getattr(bodies, "mount", None)
@@ -92,6 +97,11 @@ ALIKE = 1e-9
 
 def solids_of(name: str) -> dict[str, list[Solid]]:
     """Return every piece by body. Raises UserError where the model cannot move, or has no automatic parts."""
+    if is_in_space(model_of(name)[0]):
+        from mechanisms.stages.automatic.space.machine import solids_in_space
+
+        in_space: Any = bare_solution(name)
+        return solids_in_space(in_space)
     from mechanisms.stages.automatic.automatic import automatic
 
     if wished_scale() is not None:

@@ -5,10 +5,13 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from msgspec import UNSET
 
 from shared.contract import BodyParts, End, Held, Piece, Rolling
 from shared.contract.materials import MATERIALS
+from shared.contract.parts import Link
 from shared.shapes.bodies import Bodies, Place
 from shared.shapes.solid import Solid
 from shared.shapes.units import metres
@@ -91,20 +94,33 @@ def _refuse_unknown_pieces(name: str, bodies: Bodies, home: dict[str, str]) -> N
 # One body as parts.json has it: its solids checked, meshed and weighed, and the bytes of their files.
 
 
+class Measured(NamedTuple):
+    """Numbers of masses beside their centre and inertia in the plane."""
+
+    along: bool = False
+    """z of the solids is that of the model, so masses have it, too."""
+    space: bool = False
+    """The whole inertia, of a mechanism in space."""
+
+
+PLANAR = Measured()
+
+
 def described_body(
     name: str,
     body: str,
     solids: list[Any],
     files: dict[str, bytes],
     places: tuple[Place, Place] | None,
-    along: bool = False,
+    along: Measured = PLANAR,
     kept: KeptPieces | None = None,
     done: Callable[[], object] = bool,
+    link: tuple[str, str, tuple[float, float, float]] | None = None,
 ) -> BodyParts:
     """Describe a body and add its files to ``files``; ``places`` are those that a rod joins.
 
-    ``along``: z of the solids is that of the model, so masses have it, too. Pieces that are ``kept`` are not made
-    again; ``done`` is called after each piece.
+    ``link``: joint in space whose massless link it is, with the body and direction of its z axis. Pieces
+    that are ``kept`` are not made again; ``done`` is called after each piece.
 
     Raises UserError naming the solid that is refused.
     """
@@ -116,7 +132,8 @@ def described_body(
         done()
     main = pieces[solids[0].name]
     mass = combined(piece.mass for piece in pieces.values() if not piece.dressing)
-    return BodyParts(pieces=pieces, mass=mass, z=(sum(main.z_range)) / 2, spans=places and spans(places))
+    own = UNSET if link is None else Link(joint=link[0], body=link[1], z=link[2])
+    return BodyParts(pieces=pieces, mass=mass, z=(sum(main.z_range)) / 2, spans=places and spans(places), link=own)
 
 
 def spans(places: tuple[Place, Place]) -> tuple[End, End]:
@@ -126,7 +143,7 @@ def spans(places: tuple[Place, Place]) -> tuple[End, End]:
 
 
 def _piece(
-    name: str, body: str, solid: Any, files: dict[str, bytes], along: bool, kept: KeptPieces | None = None
+    name: str, body: str, solid: Any, files: dict[str, bytes], along: Measured, kept: KeptPieces | None = None
 ) -> Piece:
     """Check one solid, add its files to ``files``, and describe it."""
     from mechanisms.stages.parts.memory import Kept
@@ -166,7 +183,7 @@ def _piece(
         material=solid.material,
         stl=f"{solid.name}.stl",
         step=f"{solid.name}.step",
-        mass=mass_of(shape, MATERIALS[solid.material].density, along),
+        mass=mass_of(shape, MATERIALS[solid.material].density, *along),
         z_range=(metres(float(mesh.bounds[0][2])), metres(float(mesh.bounds[1][2]))),
         triangles=len(mesh.faces),
         stl_sha256=hashlib.sha256(stl).hexdigest(),

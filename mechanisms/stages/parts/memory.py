@@ -11,7 +11,7 @@ import io
 import os
 import shutil
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path, PurePath
@@ -222,7 +222,7 @@ class KeptPieces:
         self._begins = time.monotonic() + soon
         self._waiting: dict[str, Kept] = {}
 
-    def key(self, shape: Any, solid: Any, along: bool) -> str:
+    def key(self, shape: Any, solid: Any, along: Sequence[bool]) -> str:
         """Return the key of the piece of ``solid``.
 
         ``shape`` is its ``cadquery.Solid``, as yet without a mesh.

@@ -91,12 +91,16 @@ def _edges(mesh: Any) -> str:
 # Mass, centre of mass and inertia of solids: exact from the CAD kernel, times the density of the material.
 
 
-def mass_of(solid: Any, density: float, along: bool = False) -> Mass:
+ENTRIES = ((1, 1), (2, 2), (3, 3), (1, 2), (1, 3), (2, 3))
+"""Rows and columns of xx, yy, zz, xy, xz, yz, from 1."""
+
+
+def mass_of(solid: Any, density: float, along: bool = False, space: bool = False) -> Mass:
     """Return mass properties (kg, m, kg m^2, m^3) of a ``cadquery.Shape`` in mm; ``density`` in kg/m^3.
 
     The shape is in mm, ``density`` in kg/m^3. The centre of mass is in the body's frame; the inertia is about the axis
     through it, along z. ``along``: with z of the centre of mass and the products of inertia, which count where z is
-    that of the model.
+    that of the model. ``space``: with the whole inertia.
     """
     from OCP.BRepGProp import BRepGProp
     from OCP.GProp import GProp_GProps
@@ -113,6 +117,8 @@ def mass_of(solid: Any, density: float, along: bool = False) -> Mass:
     if along:
         products = tuple(-density * inertia_metres(matrix.Value(row, 3)) for row in (1, 2))
         more = {"z": metres(centre.Z()), "products": products}
+    if space:
+        more["tensor"] = tuple(density * inertia_metres(matrix.Value(row, column)) for row, column in ENTRIES)
     return Mass(
         mass=density * volume,
         com=(metres(centre.X()), metres(centre.Y())),
@@ -145,4 +151,20 @@ def _along(pieces: list[Mass], mass: float, com: tuple[float, float]) -> dict[st
         sum(products[k] + piece.mass * (own - z) * (piece.com[k] - com[k]) for piece, own, products in known)
         for k in (0, 1)
     )
-    return {"z": z, "products": (px, py)}
+    more: dict[str, Any] = {"z": z, "products": (px, py)}
+    if all(piece.tensor is not None for piece in pieces):
+        more["tensor"] = _tensor(pieces, np.array([*com, z]))
+    return more
+
+
+def _tensor(pieces: list[Mass], centre: np.ndarray) -> tuple[float, ...]:
+    """Return the whole inertia about a common centre of mass (3,), as :class:`Mass` has it (Steiner)."""
+    total = np.zeros((3, 3))
+    for piece in pieces:
+        assert piece.tensor is not None
+        assert piece.z is not None
+        xx, yy, zz, xy, xz, yz = piece.tensor
+        arm = np.array([*piece.com, piece.z]) - centre
+        total += np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        total += piece.mass * (float(arm @ arm) * np.eye(3) - np.outer(arm, arm))
+    return tuple(float(total[row - 1, column - 1]) for row, column in ENTRIES)

@@ -53,6 +53,7 @@ AUTOMATIC = [
     *SOURCES,
     *(_STAGES / name for name in _AUTOMATIC),
     *(_STAGES / "solve" / f"{name}.py" for name in _MOTION),
+    _STAGES / "solve" / "space",
 ]
 """Sources of parts without a parts.py."""
 MACHINE = "machine"
@@ -158,7 +159,7 @@ def _kept_pieces(out: Out) -> KeptPieces:
 
 def _described(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Recorder, seen: _Seen) -> _Result:
     from mechanisms.stages.parts.automatic_solids import follows_gravity, mount_of
-    from mechanisms.stages.parts.bodies import described_body
+    from mechanisms.stages.parts.bodies import Measured, described_body
     from shared.shapes.bodies import Bodies
 
     name = out.name
@@ -176,10 +177,11 @@ def _described(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Re
     key = _key(given, reads, inputs, wish)
     files: dict[str, bytes] = {}
     rods = getattr(bodies, "rods", {})
-    along = getattr(bodies, "along", False)
+    measured = Measured(getattr(bodies, "along", False), getattr(bodies, "space", False))
+    links = getattr(bodies, "links", {})
     shown, kept = Shown("parts", out.title, sum(map(len, bodies.values())), "solids written"), _kept_pieces(out)
     described = {
-        body: described_body(name, body, solids, files, rods.get(body), along, kept, shown.advance)
+        body: described_body(name, body, solids, files, rods.get(body), measured, kept, shown.advance, links.get(body))
         for body, solids in bodies.items()
     }
     document = Parts(

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import chain
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from mechanisms.stages.solve import solving
+from mechanisms.stages.solve.space.running import give_masses_of_parts, is_in_space, lacks_mass
 from shared.contract import BodyParts, Mass, Parts
 from shared.contract.materials import MATERIALS
 from shared.contract.quantity import written
@@ -120,6 +121,9 @@ def give_masses(m: Mechanism, parts: Parts | None) -> tuple[dict[str, Source], l
     """
     if parts is not None:
         _refuse_other_bodies(m, parts)
+    if is_in_space(m):
+        in_space: Any = m
+        return give_masses_of_parts(in_space, bodies_of(parts) if parts is not None else {})  # pyright: ignore[reportReturnType]
     given = [name for name, body in m.bodies.items() if body.mass_given or body.mass > 0 or body.inertia > 0]
     solids = bodies_of(parts) if parts is not None else {}
     source: dict[str, Source] = {}
@@ -151,6 +155,8 @@ def leaves_masses(m: Mechanism) -> bool:
 
     ``m`` then has estimates in their place.
     """
+    if is_in_space(m):
+        return any(lacks_mass(body) for name, body in m.bodies.items() if name != "ground")
     return "estimate" in give_masses(m, None)[0].values()
 
 
@@ -165,8 +171,8 @@ def give_masses_aloud(stage: str, name: str, m: Mechanism, parts: Parts | None) 
 
 
 def bodies_of(parts: Parts) -> dict[str, BodyParts]:
-    """Return the bodies of parts.json without its rods, which are none of mechanism.py."""
-    return {name: body for name, body in parts.bodies.items() if body.spans is None}
+    """Return the bodies of parts.json without its rods and other links of joints, which are none of mechanism.py."""
+    return {name: body for name, body in parts.bodies.items() if body.spans is None and not body.link}
 
 
 def _estimate(m: Mechanism, names: list[str], left_out: bool) -> list[str]:
@@ -215,6 +221,8 @@ def bare_solution(name: str, masses: Mapping[str, Mass] | None = None) -> Soluti
     made for it follow from a motion with their own masses (automatic_solids.py). Raises UserError.
     """
     m, module, p = solving.model_of(name)
+    if is_in_space(m):
+        return solving.motion_of(name, module, m, p)
     sources, _ = give_masses(m, None)
     for body in (body for body, source in sources.items() if source == "estimate" and body in (masses or {})):
         mass = (masses or {})[body]
@@ -224,4 +232,6 @@ def bare_solution(name: str, masses: Mapping[str, Mass] | None = None) -> Soluti
 
 def depends_on_masses(name: str, solution: Solution) -> bool:
     """Return True if the motion is a simulation of bodies some of which have no mass in mechanism.py."""
+    if is_in_space(solution):
+        return False  # a simulation in space has its masses from mechanism.py
     return solution.work is not None and leaves_masses(solving.model_of(name)[0])

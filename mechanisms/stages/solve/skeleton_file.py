@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
+from mechanisms.stages.solve.space.running import is_in_space
 from shared.contract import BodyParts, Parts, Provenance
 from shared.contract.materials import MATERIALS
 from shared.contract.skeleton import Carried, CarriedName, Carrier, End, Moving, Name, Pose, Skeleton, Stroke
@@ -49,6 +50,11 @@ def skeleton_of(solution: Solution, provenance: Provenance) -> Skeleton:
 
     from mbsd.drawing.strokes import moved, strokes_of
 
+    in_space = is_in_space(solution)
+    if in_space:
+        from mbsd.spatial import drawing
+
+        strokes_of = cast(Any, drawing.strokes_of)
     times = np.linspace(solution.t[0], solution.t[-1], POSES + 1)[:-1]
     steps = np.unique(np.abs(solution.t[:, None] - times).argmin(axis=0))
     drawn = strokes_of(solution, [int(step) for step in steps])
@@ -65,7 +71,7 @@ def skeleton_of(solution: Solution, provenance: Provenance) -> Skeleton:
         unit=first.unit,
         names=names,
         poses=poses,
-        moving=moving_of(solution),
+        moving=None if in_space else moving_of(solution),
     )
 
 

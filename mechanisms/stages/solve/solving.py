@@ -5,6 +5,8 @@ from its start. Two numbers beside build() say more:
 
     DURATION = 2.0    how long the motion is (s); a simulation needs it, a sweep takes its period without
     STEPS = 600       number of equal output steps
+
+A mechanism of mbsd.spatial is solved the same way (space/running.py).
 """
 
 from __future__ import annotations
@@ -19,6 +21,7 @@ import numpy as np
 
 from mechanisms.stages.loading import loading
 from mechanisms.stages.loading.loading import refuse_arguments
+from mechanisms.stages.solve.space.running import is_in_space, natural_run
 from shared.contract.quantity import counted
 from shared.stage import console
 from shared.stage.errors import UserError
@@ -44,7 +47,7 @@ def build(name: str, module: Any, p: Any) -> Mechanism:
     refuse_arguments(_file(name), module.build, p)
     with loading.author_code(name):
         m = module.build(p)
-    if not isinstance(m, Mechanism):
+    if not (isinstance(m, Mechanism) or is_in_space(m)):
         raise UserError(f"{_file(name)}: build() returned {_kind(m)}, not a Mechanism; does it end with 'return m'?")
     folder = owner_of(name)
     if m.name != folder:
@@ -78,13 +81,13 @@ def motion_of(name: str, module: Any, m: Mechanism, p: Any) -> Solution:
             solution = motion(m, p) if motion else _natural(name, module, m)
     except MechanismError as error:
         raise UserError(str(error)) from error
-    if not isinstance(solution, Solution):
+    if not (isinstance(solution, Solution) or is_in_space(solution)):
         raise UserError(
             f"{_file(name)}: motion() returned {_kind(solution)}; it must return a Solution, "
             "as m.sweep() and m.simulate() do"
         )
     _refuse_other(name, m, solution.mechanism)
-    if not _tell_blurred_impacts(name, solution):
+    if not is_in_space(m) and not _tell_blurred_impacts(name, solution):
         _tell_long_steps(name, module, solution)
     solution.mechanism.name = name  # where motion() built the mechanism of a variant anew
     return solution
@@ -96,6 +99,9 @@ def _natural(name: str, module: Any, m: Mechanism) -> Solution:
     steps = _positive(name, module, "STEPS", "a whole number of steps, as in STEPS = 600")
     if steps is not None and steps != int(steps):
         raise UserError(f"{_file(name)}: STEPS is {steps:g}; it must be a whole number of steps, as in STEPS = 600")
+    if is_in_space(m):
+        in_space: Any = m
+        return natural_run(in_space, duration, None if steps is None else int(steps), _file(name))  # pyright: ignore[reportReturnType]
     free = m.mobility().dof - len(m.drivers)
     if free <= 0:
         if steps is not None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 from mechanisms.stages.loading import loading
 from mechanisms.stages.loading.inputs import Inputs, observed, sources_state
 from mechanisms.stages.solve import solving
-from mechanisms.stages.solve.skeleton_file import main_material
+from mechanisms.stages.solve.skeleton_file import body_colours, main_material
+from mechanisms.stages.solve.space.running import is_in_space, summary
 from shared import contract
 from shared.contract.quantity import counted, written
 from shared.contract.skeleton import write_skeleton
@@ -27,6 +28,7 @@ _MOTION = ("solving", "masses")
 _STAGE = ("stage", *_MOTION, "motion_file", "skeleton_file")
 SOURCES = [
     *(ROOT / "mechanisms" / "stages" / "solve" / f"{name}.py" for name in _STAGE),
+    ROOT / "mechanisms" / "stages" / "solve" / "space",
     ROOT / "mechanisms" / "stages" / "loading" / "loading.py",
     *contract_sources("skeleton"),
 ]
@@ -49,8 +51,14 @@ def run(name: str, parts_are_outdated: bool = False) -> None:
     from mechanisms.stages.solve.motion_file import to_motion
     from mechanisms.stages.solve.skeleton_file import skeleton_of
 
-    def moved() -> tuple[Solution, contract.Motion]:
+    def moved() -> tuple[Solution, contract.Motion | contract.Motion3]:
         solution, sources = solve(name, parts)
+        if is_in_space(solution):
+            from mechanisms.stages.solve.space.motion_file import to_motion3
+
+            in_space, known = cast(Any, solution), cast(Any, sources)
+            inks = body_colours(in_space.mechanism, parts)
+            return solution, to_motion3(in_space, inks, versions(*PACKAGES), known)
         return solution, to_motion(solution, parts, "", versions(*PACKAGES), sources)
 
     (solution, motion), inputs = loading.recorded(name, moved)
@@ -105,6 +113,20 @@ def solve(name: str, parts: contract.Parts | None) -> tuple[Solution, dict[str, 
 
 
 def _summary(solution: Solution) -> str:
+    efforts = summary(cast(Any, solution)) if is_in_space(solution) else _efforts(solution)
+    return ", ".join(
+        [
+            f"{counted(len(solution.t), 'time')} over {solution.t[-1] - solution.t[0]:.4g} s",
+            f"{counted(solution.mobility.dof, 'degree')} of freedom",
+            f"closed to {solution.stats.position_residual:.0e} m",
+            *efforts,
+        ]
+    )
+
+
+def _efforts(solution: Solution) -> list[str]:
+    """Return the largest efforts of drivers and of forces in their place, in words."""
+
     def drives(name: str) -> bool:
         force = solution.mechanism.forces[name]
         return force.kind.drives(force)
@@ -128,11 +150,4 @@ def _summary(solution: Solution) -> str:
     for name, (effort, angular) in efforts.items():
         peak, least = float(abs(effort).max()), rounding * (solution.packed.size if angular else 1.0)
         peaks.append(f"{name} up to {written(peak if peak > least else 0.0, 'N m' if angular else 'N')}")
-    return ", ".join(
-        [
-            f"{counted(len(solution.t), 'time')} over {solution.t[-1] - solution.t[0]:.4g} s",
-            f"{counted(solution.mobility.dof, 'degree')} of freedom",
-            f"closed to {solution.stats.position_residual:.0e} m",
-            *peaks,
-        ]
-    )
+    return peaks

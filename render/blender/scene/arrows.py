@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from render.blender.scene.materials import Graph
-from render.film.scene import ArcSpec, ArrowSpec, Colour, Point
+from render.film.scene import ArcSpec, ArrowSpec, Colour, Point, across_axes
+from shared.contract.parts import Z
 
 # Arrows: a thin shaft and a cone on an empty that moves and turns them, and a ball where it begins; their lengths are
 # animated by scale.
@@ -59,23 +60,38 @@ def channels(
 ) -> list[tuple[Any, str, list[np.ndarray]]]:
     """Return the animated channels for tails and tips (n, 3): object, property, values of its components."""
     across = tips - tails
-    length = np.hypot(across[:, 0], across[:, 1])
+    length = np.linalg.norm(across, axis=1)
     there = length > 0
-    angle = np.unwrap(np.arctan2(across[:, 1], across[:, 0]))
+    turned = turns_from_x(across)
     if there.any():  # what is gone keeps the direction in which it went
         kept = np.maximum.accumulate(np.where(there, np.arange(len(there)), there.argmax()))
-        angle = angle[kept]
+        turned = turned[kept]
     length = np.maximum(length, GONE)
     factor, shaft = sizes(spec, length)
     zero = np.zeros(len(length))
     return [
         (arrow.root, "location", list(tails.T)),
-        (arrow.root, "rotation_euler", [zero, zero, angle]),
+        (arrow.root, "rotation_quaternion", list(going_on(turned).T)),
         (arrow.shaft, "scale", [shaft, factor * spec.shaft, factor * spec.shaft]),
         (arrow.head, "location", [shaft, zero, zero]),
         (arrow.head, "scale", [factor * spec.point, factor * spec.head, factor * spec.head]),
         (arrow.ball, "scale", [factor * BALL * spec.shaft] * 3),
     ]
+
+
+def turns_from_x(ways: np.ndarray) -> np.ndarray:
+    """Return unit quaternions (n, 4) of the shortest turns of the x axis to directions (n, 3); in a plane about z."""
+    length = np.linalg.norm(ways, axis=1)
+    out = np.stack([length + ways[:, 0], 0 * length, -ways[:, 2], ways[:, 1]], axis=1)
+    out[np.linalg.norm(out, axis=1) <= 1e-9 * length] = (0.0, 0.0, 0.0, 1.0)
+    out[length == 0.0] = (1.0, 0.0, 0.0, 0.0)
+    return out / np.linalg.norm(out, axis=1, keepdims=True)
+
+
+def going_on(turned: np.ndarray) -> np.ndarray:
+    """Return the same rotations as quaternions (n, 4), each with the sign nearer to the one before."""
+    flips = np.where((turned[1:] * turned[:-1]).sum(axis=1) < 0.0, -1.0, 1.0)
+    return turned * np.cumprod(np.concatenate([[1.0], flips]))[:, None]
 
 
 def build_arrow(scene: Any, spec: ArrowSpec) -> Arrow:
@@ -84,6 +100,7 @@ def build_arrow(scene: Any, spec: ArrowSpec) -> Arrow:
 
     root = bpy.data.objects.new(f"arrow {spec.name}", None)
     root.empty_display_size = spec.head
+    root.rotation_mode = "QUATERNION"
     scene.collection.objects.link(root)
     made = paint(spec.name, spec.colour)
     things = []
@@ -213,7 +230,7 @@ def arc_faces() -> tuple[list[tuple[int, ...]], list[tuple[int, ...]]]:
     return around, [tuple(reversed(range(ARC_SIDES))), tuple(range(last, last + ARC_SIDES))]
 
 
-def arc_vertices(spec: ArcSpec, centre: Point, sweep: float) -> np.ndarray:
+def arc_vertices(spec: ArcSpec, centre: Point, sweep: float, axis: Point = Z) -> np.ndarray:
     """Return vertices ((RINGS + 2) * SIDES, 3), float32, of an arc of ``sweep`` (rad) about ``centre`` (m).
 
     Its middle is at FRONT; arcs shorter than STOUT cones shrink as a whole.
@@ -225,14 +242,15 @@ def arc_vertices(spec: ArcSpec, centre: Point, sweep: float) -> np.ndarray:
     neck = end - way * min(factor * spec.point, 0.9 * length) / spec.radius
     angle = np.concatenate([np.linspace(start, neck, RINGS), [neck, end]])
     thick = factor * np.concatenate([np.full(RINGS, spec.shaft), [spec.head, 1e-3 * spec.head]])
-    out = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    x, y = (axes[0] for axes in across_axes(np.array([axis])))
+    out = np.cos(angle)[:, None] * x + np.sin(angle)[:, None] * y
     turn = -way * math.tau * np.arange(ARC_SIDES) / ARC_SIDES  # faces look outwards whichever way it goes
-    rim = np.cos(turn)[None, :, None] * out[:, None] + np.sin(turn)[None, :, None] * np.array([0.0, 0.0, 1.0])
+    rim = np.cos(turn)[None, :, None] * out[:, None] + np.sin(turn)[None, :, None] * np.array(axis)
     tube = np.asarray(centre) + spec.radius * out[:, None] + thick[:, None, None] * rim
     return tube.reshape(-1, 3).astype(np.float32)
 
 
-def place_arc(thing: Any, spec: ArcSpec, centre: Point, sweep: float) -> None:
-    """Let the arc reach ``sweep`` (rad) round ``centre``; it is not there where that is 0."""
-    thing.data.vertices.foreach_set("co", arc_vertices(spec, centre, sweep).ravel())
+def place_arc(thing: Any, spec: ArcSpec, centre: Point, sweep: float, axis: Point = Z) -> None:
+    """Let the arc reach ``sweep`` (rad) round ``centre`` about ``axis``; it is not there where that is 0."""
+    thing.data.vertices.foreach_set("co", arc_vertices(spec, centre, sweep, axis).ravel())
     thing.data.update()

@@ -257,13 +257,13 @@ def _dark(scene: Any) -> None:
 
 
 def _animate(job: Job, bodies: dict[str, Any], camera: Any, texts: list[Any]) -> None:
-    """Set linear keys at every frame; angles come unwrapped, so nothing turns the wrong way round."""
+    """Set linear keys at every frame; signs of quaternions go on, so nothing turns the wrong way round."""
     states = job.states
     for name, thing in bodies.items():
-        x, y, theta = np.array([state.bodies[name] for state in states]).T
-        zero = np.zeros(len(states))
-        _key(thing, "location", [x, y, zero])
-        _key(thing, "rotation_euler", [zero, zero, theta])
+        poses = np.array([state.bodies[name] for state in states])
+        thing.rotation_mode = "QUATERNION"
+        _key(thing, "location", list(poses[:, :3].T))
+        _key(thing, "rotation_quaternion", list(arrows.going_on(poses[:, 3:]).T))
     facing = _facing(states)
     _key(camera, "location", list(np.array([state.camera.position for state in states]).T))
     _key(camera, "rotation_euler", facing)

@@ -218,7 +218,7 @@ def _tell_of_plates(plates: Plates, answer: Callable[..., None]) -> None:
 
 def _is_drawn(state: State) -> bool:
     """Return True if any arrow is seen: one without a length takes as long as the picture, and changes nothing."""
-    return any(tail != tip for tail, tip in state.arrows) or any(sweep for _, sweep in state.arcs)
+    return any(tail != tip for tail, tip in state.arrows) or any(sweep for _, sweep, _ in state.arcs)
 
 
 if __name__ == "__main__":

@@ -94,7 +94,7 @@ def stretched(
             continue
         radius = own.radius if own else min(COIL * size, BROAD * least)
         coil = force.look == "coil"
-        tubes = _coil(name, radius, least, most) if coil else cylinder_tubes(name, 0.6 * radius, least, most)
+        tubes = coil_tubes(name, radius, least, most) if coil else cylinder_tubes(name, 0.6 * radius, least, most)
         if own:
             yield Stretched(name, force.shape, own.z, tubes)
             continue
@@ -128,6 +128,11 @@ def helix(a: Array, b: Array, radius: float, turns: int, hook: float = HOOK) -> 
     along = axis / length
     up = np.array([0.0, 0.0, 1.0])
     side = np.cross(up, along)
+    if np.linalg.norm(side) < 0.1:  # nearly upright
+        side = np.cross(np.array([0.0, 1.0, 0.0]), along)
+    if along[2] != 0.0:
+        side /= np.linalg.norm(side)
+        up = np.cross(along, side)
     inner = np.linspace(0, 1, PER_TURN * (turns + 2) + 1)
     angle = math.tau * (turns + 2) * inner
     ramp = np.clip(np.minimum(inner, 1 - inner) * (turns + 2), 0, 1)
@@ -154,7 +159,7 @@ def sagging(a: Array, b: Array, length: float, down: Array) -> Array:
     return line + low * hang
 
 
-def _coil(name: str, radius: float, least: float, most: float) -> list[tuple[TubeSpec, Path]]:
+def coil_tubes(name: str, radius: float, least: float, most: float) -> list[tuple[TubeSpec, Path]]:
     """Return a coil of as many turns as fill it well in between, and never lie on one another."""
     wire, room = WIRE * radius, 1 - 2 * HOOK
     turns = min(round(room * (least + most) / 2 / (0.95 * radius)), int(room * least / (2.3 * wire)) - 2)

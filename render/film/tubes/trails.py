@@ -10,7 +10,7 @@ import numpy as np
 from render.film.clock import Clock
 from render.film.poses import Poses
 from render.film.scene import Point, TrailSpec
-from shared.contract import Motion
+from shared.contract import AnyMotion
 from shared.contract.shot import Colour, Shot, Trail
 from shared.contract.signals import SIGNALS, linear
 
@@ -24,7 +24,7 @@ BENT = 0.995
 """Part of the motion over which that holds; stiff contacts accelerate a point at will for a moment."""
 
 
-def trails_of(motion: Motion, shot: Shot) -> tuple[Trail, ...]:
+def trails_of(motion: AnyMotion, shot: Shot) -> tuple[Trail, ...]:
     """Return the shot's trails; every traced point gets one if the shot says nothing."""
     return shot.trails if shot.trails is not None else tuple(Trail(point=point) for point in motion.points)
 
@@ -68,8 +68,8 @@ class Trails:
                 nearest = int(away.argmin())
                 if away[nearest] <= 0.5 * step * (1 + 1e-6):
                     times[1 + nearest] = event.time
-            z = self.heights[trail.point]
-            out.append([(float(x), float(y), z) for x, y in self.poses.point(trail.point, times)])
+            height = self.heights[trail.point]
+            out.append([(float(x), float(y), float(z)) for x, y, z in self.poses.path(trail.point, times, height)])
         return out
 
     @cached_property
@@ -80,8 +80,7 @@ class Trails:
         """
         out = []
         for trail in self.trails:
-            point = self.poses.motion.points[trail.point]
-            bend = float(np.quantile(np.hypot(point.ax, point.ay), BENT))
+            bend = float(np.quantile(self.poses.bends(trail.point), BENT))
             stray = STRAY * trail.radius * self.size
             length = trail.tail * (self.clock.end - self.clock.start) / self.clock.turns
             wanted = math.ceil(length * math.sqrt(bend / (8 * stray)))

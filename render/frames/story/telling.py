@@ -82,7 +82,7 @@ def _state(film: Film, picture: Picture) -> State:
     return msgspec.structs.replace(
         state,
         arrows=[(tail, _along(tail, tip, grown)) for tail, tip in state.arrows],
-        arcs=[(middle, sweep * grown) for middle, sweep in state.arcs],
+        arcs=[(middle, sweep * grown, axis) for middle, sweep, axis in state.arcs],
         number="",
         lifts=dict(picture.lifts),
         hidden=picture.hidden,

@@ -14,7 +14,7 @@ from render.magnitudes import NOISE, Crank, crank_of, force_scale, speed_scale, 
 from render.plots.measures import Horizon, cut, dress_axis, dress_plane, horizon, mark, turned
 from render.plots.style import FAINT, INK, LABELLED, PARTS, QUIET, Labels, ink_of, insight_under, label_ends, page, rows
 from render.report.written import first_peak, speed
-from shared.contract import BodyMotion, Motion, PointMotion
+from shared.contract import AnyMotion, BodyMotion, Motion, PointMotion
 from shared.contract.quantity import figures, written
 from shared.contract.skeleton import Skeleton, Stroke
 
@@ -262,22 +262,31 @@ def path(motion: Motion, skeleton: Skeleton) -> Figure:
     labels = Labels(axes)
     for joint in motion.joints.values():
         axes.plot(joint.x, joint.y, color=WAY, linewidth=0.9, zorder=1)
+    faint_poses(axes, skeleton, motion)
+    for stroke in skeleton.poses[0].strokes:
+        draw_stroke(axes, stroke, motion, labels)
+    _curves(axes, motion, skeleton, labels)
+    draw_names(labels, skeleton, motion)
+    dress_plane(axes)
+    labels.write()
+    return figure
+
+
+def faint_poses(axes: Axes, skeleton: Skeleton, motion: AnyMotion) -> None:
+    """Draw the bodies in all poses but the first, faint."""
     for pose in skeleton.poses[1:]:
         for stroke in pose.strokes:
             if stroke.ink.startswith("body:") and stroke.order >= WHEELS:
                 axes.plot(*_corners(stroke).T, color=_ink(stroke.ink, motion), linewidth=0.8, alpha=0.3, zorder=1.2)
-    for stroke in skeleton.poses[0].strokes:
-        _draw_stroke(axes, stroke, motion)
-        labels.avoid_lines([(float(x), float(y)) for x, y in _corners(stroke)])
-    _curves(axes, motion, skeleton, labels)
+
+
+def draw_names(labels: Labels, skeleton: Skeleton, motion: AnyMotion) -> None:
+    """Ask for the names of bodies, joints and points."""
     for name in skeleton.names:
         of_body = name.text in motion.bodies
         labels.add(
             name.text, name.at, _ink(name.ink, motion), weight="normal" if of_body else "bold", clearance=name.clearance
         )
-    dress_plane(axes)
-    labels.write()
-    return figure
 
 
 def _span(motion: Motion) -> str:
@@ -292,7 +301,9 @@ def _corners(stroke: Stroke) -> np.ndarray:
     return np.vstack([points, points[:1]]) if stroke.closed else points
 
 
-def _draw_stroke(axes: Axes, stroke: Stroke, motion: Motion) -> None:
+def draw_stroke(axes: Axes, stroke: Stroke, motion: AnyMotion, labels: Labels) -> None:
+    """Draw a stroke of the first pose, which names keep clear of."""
+    labels.avoid_lines([(float(x), float(y)) for x, y in _corners(stroke)])
     corners, ink = _corners(stroke), _ink(stroke.ink, motion)
     order = 3 + stroke.order / 4  # above the ways and the faint poses, below the curves
     if stroke.fill is not None:
@@ -322,7 +333,7 @@ def _curves(axes: Axes, motion: Motion, skeleton: Skeleton, labels: Labels) -> N
         labels.avoid_lines(list(zip(point.x, point.y, strict=True)))
 
 
-def _ink(role: str, motion: Motion) -> str:
+def _ink(role: str, motion: AnyMotion) -> str:
     """Return the colour of a role of skeleton.json on this page; a body has that of its other plots."""
     body = role.removeprefix("body:")
     if body != role and body in motion.bodies:

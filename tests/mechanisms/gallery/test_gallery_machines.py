@@ -29,7 +29,7 @@ from render.plots.quantities import quantity
 from shared.contract import Motion, mounted
 from shared.contract.geometry import BeltPath
 from shared.contract.shot import Shot
-from shared.stage.paths import mechanism_names
+from shared.stage.paths import planar_names
 from tests.drawing.test_carried import check
 from tests.mechanisms.author_project import folders_and_variants
 
@@ -274,7 +274,7 @@ def test_gravity_is_down_in_the_picture(name: str) -> None:
 # Each stroke of each mechanism's skeleton is carried to where it is drawn.
 
 
-@pytest.mark.parametrize("name", mechanism_names())
+@pytest.mark.parametrize("name", planar_names())
 def test_each_stroke_is_carried_to_where_it_is_drawn(name: str) -> None:
     module, p = loading.load(name, "mechanism"), loading.params(name)
     solution = solving.motion_of(name, module, solving.build(name, module, p), p)

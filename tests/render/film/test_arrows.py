@@ -298,7 +298,7 @@ def test_a_guide_has_a_torque_and_what_acts_beside_its_marker_the_torque_there()
 def test_the_largest_has_the_full_sweep_tiny_ones_and_rounding_are_left_out():
     made = Arcs(TIME, [steady_torque(-50.0), steady_torque(5.0, at=(1, 0)), steady_torque(0.4 * TINY * 50.0)], size=0.4)
     assert [torque.value[0] for torque in made.torques] == [-50.0, 5.0]
-    assert [sweep for _, sweep in made.sweeps_at(0.5, [0.01, 0.02])] == pytest.approx([-FULL_TURN, FULL_TURN / 10])
+    assert [sweep for _, sweep, _ in made.sweeps_at(0.5, [0.01, 0.02])] == pytest.approx([-FULL_TURN, FULL_TURN / 10])
     assert [row.number for row in made.legend()] == ["20 N m"]
     assert made.legend()[0].sweep == pytest.approx(FULL_TURN * 20 / 50)
     forces = vectors(four_bar_motion(), ("forces", "reactions"))
@@ -381,7 +381,8 @@ def test_an_arc_is_drawn_where_it_is(out_root: Path):
     still.still("four_bar", preset, 5, "forces")
     picture = np.asarray(Image.open(out.stills / "stamp-0005-forces.png").convert("RGB")).astype(int)
     state, [spec] = film.state(5), film.scene.arcs
-    [(centre, sweep)] = state.arcs
+    [(centre, sweep, axis)] = state.arcs
+    assert axis == (0.0, 0.0, 1.0)
     assert abs(sweep) > 0.5
     pixels = project(state.camera, vertices(spec, centre, sweep).reshape(RINGS + 2, SIDES, 3).mean(axis=1), 240, 135)
     assert ((pixels > 0) & (pixels < (240, 135))).all()

@@ -26,6 +26,7 @@ from shared.contract import Rolling, mounted, read_parts, write_motion, write_pa
 from shared.contract.shot import Camera, Label, Shot, write_shot
 from shared.stage import jsonfile
 from shared.stage.paths import ROOT, Out
+from tests.render.planar import in_plane
 from tools.fixtures import film_fixture
 
 TINY = Preset("tiny", 96, 54, 2)
@@ -232,7 +233,7 @@ def test_the_saved_scene_plays_the_motion(out_root: Path, tmp_path: Path):
     for frame in at:
         state = seen.state(frame)
         for body in film_fixture.LENGTHS:
-            x, y, theta = state.bodies[body]
+            x, y, theta = in_plane(state.bodies[body])
             assert played[f"{body} {frame}"] == pytest.approx([x, y, np.cos(theta), np.sin(theta)], abs=2e-6)
         assert played[f"trail {frame}"] == pytest.approx(state.trails[0][0][:2], abs=2e-6)
     assert played["range"] == [0, 11, 30]

@@ -18,7 +18,7 @@ from render.insights.ranking import ANEW, WEIGHTS
 from render.insights.seen import Seen
 from render.insights.stops import fastest, stops, words_of
 from shared.contract import Motion
-from shared.stage.paths import mechanism_names
+from shared.stage.paths import planar_names
 from tools.models.motions import bouncing_ball, four_bar_motion
 
 MOTION = four_bar_motion()
@@ -163,7 +163,7 @@ SMALL_TALK = ("stroke", "bend", "reach", "even_return", "period", "energy_kept")
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", mechanism_names())
+@pytest.mark.parametrize("name", planar_names())
 def test_every_mechanism_of_the_gallery_has_three_insights_that_are_not_trivial(name: str) -> None:
     solution, sources = solve(name, None)
     findings = insights(to_motion(solution, None, "0" * 64, {}, sources))

@@ -69,8 +69,8 @@ def _refuse_wrong_piece(folder: Path, where: str, piece: Piece) -> None:
     if piece.material not in MATERIALS:
         raise UserError(f"{where}: there is no material '{piece.material}'")
     size = metres(box.DiagonalLength)
-    along = piece.mass.z is not None
-    if not _alike(mass_of(solid, MATERIALS[piece.material].density, along), piece.mass, size, RELATIVE):
+    along = piece.mass.z is not None, piece.mass.tensor is not None
+    if not _alike(mass_of(solid, MATERIALS[piece.material].density, *along), piece.mass, size, RELATIVE):
         raise UserError(f"{where}: the mass in parts.json is not that of its solid")
 
 

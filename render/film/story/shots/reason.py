@@ -38,7 +38,7 @@ def notes(scenery: Scenery, picture: Picture) -> tuple[Note, ...]:
     longest = max(lengths, default=0.0)
     out: list[Note] = []
     what = scenery.reasons[0] if scenery.reasons else None
-    for (middle, sweep), torque in zip(state.arcs, film.arcs.torques, strict=True):
+    for (middle, sweep, _), torque in zip(state.arcs, film.arcs.torques, strict=True):
         name = torque.name.partition(" on ")[0]
         if what is not None and name in what.joints and what.unit in EFFORTS and sweep and not out:
             x, y = project(picture.camera, np.array(middle), wide, high)[0]

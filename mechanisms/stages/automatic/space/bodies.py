@@ -1,0 +1,134 @@
+"""Bodies in space: their ends joined by straight rods, a disc through many, and the discs and balls that they carry."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import cadquery as cq
+import numpy as np
+
+from mbsd.spatial.model.body import Body
+from mechanisms.stages.automatic.space import round as shapes
+from mechanisms.stages.automatic.space.ends import End, Line, Part
+from mechanisms.stages.automatic.space.moves import MM, Array, Sizes
+from mechanisms.stages.automatic.space.round import across, unit
+
+FLAT = 0.6
+"""Ends lie in a plane if none is farther from it, in rods."""
+MANY = 4
+"""Ends from which on a plate holds them."""
+BOB = 2.6
+"""Radius of the ball that stands for a mass at the end of a rod, in rods."""
+
+
+def body_parts(body: Body, ends: list[End], sizes: Sizes, material: str) -> tuple[list[Part], list[Line]]:
+    """Return the pieces of a body, the main one first, and lines for looking whether it meets others (mm)."""
+    solids: list[cq.Shape] = []
+    lines: list[Line] = []
+    shape = body.shape
+    nodes = [end.node for end in ends]
+    radius = sizes.rod
+    if shape is not None and shape.kind == "rod":
+        own = MM * shape.radius if shape.radius > 0.0 else sizes.rod
+        rods = _along_x(nodes, MM * shape.length, own, sizes)
+        radius = own
+    else:
+        centre = MM * np.array(body.com) if shape is None else np.zeros(3)
+        rods = _joined(nodes, centre, shape is not None, sizes)
+        if len(nodes) >= MANY and shape is None:
+            plate = _plate(nodes, sizes)
+            if plate is not None:
+                solids, rods = [plate], []
+                lines += [(np.mean(nodes, axis=0), node, sizes.rod) for node in nodes]
+    solids += [shapes.rod(a, b, radius) for a, b in rods]
+    lines += [(a, b, radius) for a, b in rods]
+    added, extra = _carried(body, nodes, sizes)
+    solids += added
+    for end in ends:
+        solids += end.adds
+        lines += end.lines
+    cuts = [cut for end in ends for cut in end.cuts]
+    holes = sum(end.holes for end in ends)
+    main = ("body", shapes.fused(solids or [shapes.ball(np.zeros(3), 3 * sizes.rod)], cuts), material, holes)
+    parts = [main, *extra]
+    for end in ends:
+        parts += [(f"{name}_{end.joint}", *rest) for name, *rest in end.parts]
+    return parts, lines + _rim(body)
+
+
+def _along_x(nodes: list[Array], length: float, radius: float, sizes: Sizes) -> list[tuple[Array, Array]]:
+    """Return the rod of a body along x, as far as its ends are, and rods from it to ends aside."""
+    x = np.eye(3)[0]
+    near = [node for node in nodes if np.hypot(node[1], node[2]) <= 1.5 * sizes.rod]
+    places = [float(node[0]) for node in near]
+    free = [at for at in (0.0, length) if all(abs(at - place) > 6.0 * sizes.rod for place in places)]
+    low, high = min(places + free), max(places + free)
+    out = [(low * x, high * x)] if high - low > radius else []
+    for node in nodes:
+        if np.hypot(node[1], node[2]) > 1.5 * sizes.rod:
+            out.append((min(max(float(node[0]), low), high) * x, node))
+    return out
+
+
+def _joined(nodes: list[Array], centre: Array, carries: bool, sizes: Sizes) -> list[tuple[Array, Array]]:
+    """Return straight rods that join the ends of a body, with what it carries."""
+    if len(nodes) == 2 and not carries:
+        pairs = [(nodes[0], nodes[1])]
+    elif len(nodes) <= 1 or carries:
+        pairs = [(node, centre) for node in nodes]
+    else:
+        pairs = [(np.mean(nodes, axis=0), node) for node in nodes]
+    return [(a, b) for a, b in pairs if np.linalg.norm(b - a) > 0.05 * sizes.rod]
+
+
+def _plate(nodes: list[Array], sizes: Sizes) -> cq.Shape | None:
+    """Return a round plate through many ends, or None where they lie in no plane."""
+    middle = np.mean(nodes, axis=0)
+    normal = np.linalg.svd(np.array(nodes) - middle)[2][2]
+    if max(abs((node - middle) @ normal) for node in nodes) > FLAT * sizes.rod:
+        return None
+    radius = max(float(np.linalg.norm(node - middle)) for node in nodes) + 1.6 * sizes.rod
+    return shapes.disc(middle, normal, radius, 0.9 * sizes.rod)
+
+
+def _carried(body: Body, nodes: list[Array], sizes: Sizes) -> tuple[list[cq.Shape], list[Part]]:
+    """Return what is fused to a body's rods, and pieces on them: a disc or ball, or a ball for a mass at an end."""
+    shape, x, zero = body.shape, np.eye(3)[0], np.zeros(3)
+    if shape is not None and shape.kind == "disc":
+        radius, half = MM * shape.radius, max(0.5 * MM * shape.length, 0.05 * MM * shape.radius, 0.5 * sizes.rod)
+        on_axis = all(np.hypot(node[1], node[2]) < 0.1 * sizes.rod for node in nodes)
+        if not on_axis:
+            return [shapes.disc(zero, x, radius, half)], []
+        hub = min(2.2 * sizes.rod, 0.8 * radius)
+        wheel = shapes.fused([shapes.disc(zero, x, radius, half)], [shapes.disc(zero, x, hub, half + 1.0)])
+        return [shapes.disc(zero, x, hub, half + 0.7 * sizes.rod)], [("disc", wheel, "brass", 1)]
+    if shape is not None and shape.kind == "ball":
+        return [shapes.ball(zero, MM * shape.radius, unit(nodes[0]) if nodes and np.linalg.norm(nodes[0]) else x)], []
+    com = MM * np.array(body.com)
+    if shape is None and len(nodes) == 1 and np.linalg.norm(com - nodes[0]) > sizes.rod:
+        pole = unit(com - nodes[0])
+        bob = shapes.ball(com, BOB * sizes.rod, pole)
+        return [shapes.ball(com, 1.2 * sizes.rod, pole)], [
+            (
+                "bob",
+                shapes.fused([bob], [shapes.ball(com, 1.2 * sizes.rod, pole), shapes.rod(nodes[0], com, sizes.rod)]),
+                "brass",
+                0,
+            )
+        ]
+    return [], []
+
+
+def _rim(body: Body) -> list[Line]:
+    """Return lines round a disc or ball."""
+    shape = body.shape
+    if shape is None or shape.kind == "rod":
+        return []
+    if shape.kind == "ball":
+        return [(np.zeros(3), np.zeros(3), MM * shape.radius)]
+    half = max(0.5 * MM * shape.length, 0.05 * MM * shape.radius)
+    y = across(np.eye(3)[0])
+    z = np.cross(np.eye(3)[0], y)
+    turn = np.linspace(0.0, 2.0 * np.pi, 17)
+    rim = (MM * shape.radius - half) * (np.outer(np.cos(turn), y) + np.outer(np.sin(turn), z))
+    return [(a, b, half) for a, b in pairwise(rim)]

@@ -1,0 +1,227 @@
+"""Mechanisms in space through the stages: motion against closed forms, parts that are whole and keep apart."""
+
+from __future__ import annotations
+
+import importlib
+import math
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mbsd.spatial import Mechanism, constant_rate
+from mbsd.spatial.model.rotation import rotation_matrix
+from mechanisms.heavy_top import mechanism as top
+from mechanisms.rssr import mechanism as rssr
+from mechanisms.sarrus import mechanism as sarrus
+from mechanisms.spatial_slider_crank import mechanism as slider_crank
+from mechanisms.stages.automatic.space.machine import link_poses, solids_in_space
+from mechanisms.stages.automatic.space.moves import Moves
+from mechanisms.stages.parts.meshes import check_mesh, only_solid
+from mechanisms.stages.parts_files import read_mesh, stl_bytes
+from mechanisms.stages.solve.stage import solve
+from shared.shapes.facets import volume_of
+from shared.stage.errors import UserError
+from shared.stage.paths import mechanism_names, planar_names
+
+NAMES = sorted(set(mechanism_names()) - set(planar_names()))
+
+
+@cache
+def solution(name: str) -> Any:
+    """Return the motion of a mechanism of the gallery as its stage solves it."""
+    return solve(name, None)[0]
+
+
+def test_the_gallery_has_mechanisms_in_space() -> None:
+    assert {"cardan_shaft", "heavy_top", "rssr", "sarrus", "spatial_slider_crank"} <= set(NAMES)
+    assert "four_bar" in planar_names()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_its_file_is_short_and_its_motion_closes(name: str) -> None:
+    module = importlib.import_module(f"mechanisms.{name}.mechanism")
+    with open(str(module.__file__)) as file:
+        assert len(file.readlines()) <= 60
+    stats = solution(name).stats
+    assert stats.position_residual < 1e-10
+    assert stats.velocity_residual < 1e-8
+    assert stats.acceleration_residual < 1e-6
+
+
+# -- motions against closed forms ------------------------------------------------------------------------------------
+
+
+def test_the_cardan_shaft_turns_its_output_as_its_input() -> None:
+    """Both bends alike and the middle yokes in one plane: ratio 1; the middle runs between cos b and 1 / cos b."""
+    from mechanisms.cardan_shaft import mechanism as cardan
+
+    sol, p = solution("cardan_shaft"), cardan.Params()
+    np.testing.assert_allclose(sol.joint("bearing_out").turn_rate, p.speed, rtol=1e-12)
+    axis = np.array([math.cos(math.radians(p.bend)), math.sin(math.radians(p.bend)), 0.0])
+    middle = sol.body("middle").w @ axis
+    assert middle.max() == pytest.approx(p.speed / math.cos(math.radians(p.bend)), rel=1e-9)
+    assert middle.min() == pytest.approx(p.speed * math.cos(math.radians(p.bend)), rel=1e-9)
+
+
+def test_the_heavy_top_keeps_its_energy_and_both_momenta() -> None:
+    """Energy, the angular momentum about the vertical, and the spin about its axis (Goldstein, section 5.7)."""
+    sol, p = solution("heavy_top"), top.Params()
+    view, total = sol.body("top"), sol.energy.total
+    assert np.ptp(total) < 1e-8 * abs(total).max()
+    body = sol.mechanism.bodies["top"]
+    axial, cross = body.inertia[0][0], body.inertia[1][1]
+    axis = view.rotation[:, :, 0]
+    spin = (view.w * axis).sum(axis=1)
+    np.testing.assert_allclose(spin, p.spin, rtol=1e-9)
+    arm = p.stem * axis
+    momentum = p.mass * np.cross(arm, np.cross(view.w, arm)) + cross * view.w + ((axial - cross) * spin)[:, None] * axis
+    np.testing.assert_allclose(momentum[:, 2], momentum[0, 2], rtol=1e-8)
+    # Mean precession of a fast top: m g l / (I3 w3)
+    turned = np.unwrap(np.arctan2(axis[:, 1], axis[:, 0]))
+    rate = p.mass * 9.80665 * p.stem / (axial * p.spin)
+    assert (turned[-1] - turned[0]) / (sol.t[-1] - sol.t[0]) == pytest.approx(rate, rel=0.03)
+
+
+def test_the_slider_crank_meets_the_numbers_of_haug() -> None:
+    """Haug 1989, section 10.2: slider at start .2 m and at a quarter turn .20784609690826528 m, and the rod is .3 m."""
+    p = slider_crank.Params()
+    sol = slider_crank.build(p).sweep(steps=360)
+    turn = sol.joint("shaft").turn
+    y, z = p.beside
+    across = np.hypot(y - p.crank * np.sin(turn), z + p.crank * np.cos(turn))
+    np.testing.assert_allclose(sol.body("slider").place[:, 0], np.sqrt(p.rod**2 - across**2), atol=1e-12)
+    assert sol.body("slider").place[0, 0] == pytest.approx(0.2, abs=1e-12)
+    assert 0.2 < sol.body("slider").place[:, 0].max() < 0.2902
+
+
+def test_the_rssr_meets_haugs_range_of_its_rocker() -> None:
+    """Haug 1989, section 10.3: the rocker swings between 45.11356 and 131.01408 degrees from the -x axis."""
+    p = rssr.Params()
+    sol = rssr.build(p).sweep(steps=1440)
+    end = sol.point("P").place - np.array([p.beside[0], p.beside[1], 0.0])
+    angle = np.degrees(np.arctan2(end[:, 2], -end[:, 0]))
+    assert [angle.min(), angle.max()] == pytest.approx([45.11356, 131.01408], abs=2e-4)
+    pin = sol.place(sol.mechanism.joints["coupler"].i).place
+    np.testing.assert_allclose(np.linalg.norm(pin - sol.point("P").place, axis=1), p.coupler, atol=1e-12)
+
+
+def test_the_sarrus_linkage_moves_its_platform_straight_up_and_holds_one_row_twice() -> None:
+    sol, p = solution("sarrus"), sarrus.Params()
+    view = sol.body("platform")
+    assert np.abs(view.place[:, :2]).max() < 1e-12
+    assert np.abs(view.rotation - np.eye(3)).max() < 1e-12
+    angle = math.radians(p.middle) - sol.joint("foot_x").turn
+    np.testing.assert_allclose(view.place[:, 2], 2 * p.link * np.sin(angle), atol=1e-12)
+    assert sol.mobility.dof == 1
+    assert sol.mobility.redundant_rows == 1
+
+
+# -- parts -----------------------------------------------------------------------------------------------------------
+
+
+def meshes(name: str) -> tuple[dict[str, list[Any]], Moves]:
+    """Return the meshes of all pieces by body (mm), each checked as the parts stage checks it, and their motion."""
+    made = solids_in_space(solution(name))
+    out: dict[str, list[Any]] = {}
+    for body, solids in made.items():
+        for solid in solids:
+            shape = only_solid(solid.shape, solid.name)
+            mesh = read_mesh(stl_bytes(shape, solid.tolerance))
+            check_mesh(mesh, volume_of(shape), solid.through_holes, solid.name)
+            out.setdefault(body, []).append(mesh)
+    moves = Moves(solution(name).mechanism, solution(name))
+    for body, (joint, holder, z) in made.links.items():
+        from mechanisms.stages.automatic.space.ends import Link
+
+        moves.poses[body] = link_poses(moves, Link(joint, [], [], holder, np.array(z)))
+    return out, moves
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_parts_are_watertight_and_no_two_bodies_share_room(name: str) -> None:
+    """At eight poses of the motion, by exact intersections of the meshes."""
+    from manifold3d import Manifold, Mesh
+
+    bodies, moves = meshes(name)
+    solids = {
+        body: [Manifold(Mesh(np.asarray(m.vertices, np.float32), np.asarray(m.faces, np.uint32))) for m in own]
+        for body, own in bodies.items()
+    }
+    rows = np.linspace(0, len(moves.poses["ground"][0]) - 1, 9).round().astype(int)[:-1]
+    for row in rows:
+        placed: list[tuple[str, Any]] = []
+        for body, own in solids.items():
+            place, turned = (part[row] for part in moves.poses[body])
+            moved = np.column_stack([turned, place])
+            placed += [(body, piece.transform(moved)) for piece in own]
+        for k, (body, piece) in enumerate(placed):
+            for other, another in placed[:k]:
+                if other != body:
+                    shared = (piece ^ another).volume()
+                    assert shared < 1e-3 * min(piece.volume(), another.volume()), (row, body, other, shared)
+
+
+def test_a_joint_without_a_shape_raises_an_error_that_names_it() -> None:
+    m = Mechanism("sheet")
+    plate = m.disc("plate", (0, 0, 0), (0, 0, 1), 0.1, mass=1.0, thickness=0.01)
+    m.planar("floor", m.ground, plate, at=(0.3, 0, 0), axis=(0, 0, 1))
+    with pytest.raises(UserError, match=r"no automatic parts for the planar joint 'floor' in space; write a parts.py"):
+        solids_in_space(m.simulate(duration=0.1, steps=5))
+
+
+def test_a_ball_that_swings_all_round_raises_an_error_that_names_its_joint() -> None:
+    m = Mechanism("whirl")
+    arm = m.rod("arm", (0, 0, 0), (0.2, 0, 0), mass=1.0, radius=0.01)
+    m.spherical("ball", m.ground, arm, at=(0, 0, 0))
+    m.start_moving({"arm": (0.0, 0.0, 40.0)})
+    with pytest.raises(UserError, match=r"joint 'ball' swings by 1.. degrees to both sides"):
+        solids_in_space(m.simulate(duration=0.4, steps=48))
+
+
+def test_bodies_that_would_meet_raise_an_error_that_names_them_and_the_time() -> None:
+    """What a crank carries at its tip sweeps through the shaft of another body."""
+    m = Mechanism("crossed")
+    crank, other = m.body("one"), m.shaft("other", (0.05, -0.2, 0.0), (0.05, 0.2, 0.0), 0.004)
+    m.revolute("hinge", m.ground, crank, at=(0, 0, -0.1), axis=(0, 1, 0))
+    m.body("end")
+    m.revolute("tip", crank, "end", at=(0, 0, 0.05), axis=(0, 1, 0))
+    m.revolute("bearing", m.ground, other, at=(0.05, 0.19, 0), axis=(0, 1, 0))
+    for driver, joint in (("a", "hinge"), ("b", "bearing"), ("c", "tip")):
+        m.drive_turn(driver, joint, constant_rate(2 * math.pi))
+    with pytest.raises(UserError, match=r"parts of 'other' and 'end' would meet at t = 0\.\d+ s, by"):
+        solids_in_space(m.sweep(duration=1.0, steps=72))
+
+
+def test_orientation_of_a_link_is_a_rotation_whose_x_axis_is_the_rod() -> None:
+    sol = solution("rssr")
+    moves = Moves(sol.mechanism, sol)
+    from mechanisms.stages.automatic.space.ends import Ends
+
+    (link,) = Ends(moves).links
+    place, turned = link_poses(moves, link)
+    np.testing.assert_allclose(
+        np.einsum("tij,tik->tjk", turned, turned), np.tile(np.eye(3), (len(place), 1, 1)), atol=1e-12
+    )
+    ends = place + 1000 * rssr.Params().coupler * turned[:, :, 0]
+    rows = np.unique(np.linspace(0, len(sol.t) - 1, len(place)).round().astype(int))
+    np.testing.assert_allclose(ends, 1000 * sol.point("P").place[rows], atol=1e-8)
+
+
+def test_masses_of_parts_fill_in_only_where_the_file_gave_none() -> None:
+    from mechanisms.stages.solve.space.running import give_masses_of_parts
+    from shared.contract import BodyParts, Mass
+
+    tensor = (2e-4, 3e-4, 4e-4, 1e-5, 0.0, 0.0)
+    mass = Mass(mass=0.5, com=(0.01, 0.02), inertia=4e-4, volume=1e-4, z=0.03, tensor=tensor)
+    parts = {name: BodyParts(pieces={}, mass=mass, z=0.0) for name in ("crank", "slider")}
+    m = slider_crank.build(slider_crank.Params())
+    sources, _ = give_masses_of_parts(m, parts)
+    assert sources == {"crank": "parts", "slider": "mechanism"}
+    assert m.bodies["slider"].mass == slider_crank.Params().slider
+    crank = m.bodies["crank"]
+    assert (crank.mass, crank.com) == (0.5, (0.01, 0.02, 0.03))
+    moments, axes = crank.principal
+    np.testing.assert_allclose(axes @ np.diag(moments) @ axes.T, crank.inertia, atol=1e-15)
+    assert abs(np.linalg.det(rotation_matrix(crank.orientation)) - 1.0) < 1e-12

@@ -1,0 +1,166 @@
+"""Pictures of mechanisms in space: poses between rows, arrows along any direction, and all stages of one mechanism."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mbsd.spatial import drawing
+from mechanisms.heavy_top import mechanism as top
+from mechanisms.stages import shot as shot_stage
+from mechanisms.stages.clearance import stage as clearance_stage
+from mechanisms.stages.parts import stage as parts_stage
+from mechanisms.stages.solve import stage as solve_stage
+from mechanisms.stages.solve.space.motion_file import to_motion3
+from render import glb, plots, report
+from render.blender.scene.arrows import going_on, turns_from_x
+from render.film.film import Film
+from render.film.framing import project
+from render.film.inputs import read_film
+from render.film.scene import across_axes
+from render.film.space import SpacePoses, matrices, quaternion_of, torques_in_space, vectors_in_space
+from render.plots.pages import space as pages
+from shared.contract import is_in_space, read_motion, read_parts
+from shared.contract.shot import Shot
+from shared.stage.errors import UserError
+from shared.stage.paths import Out
+from tests.render.glb_file import GlbFile
+
+DIRECTIONS = st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(lambda way: math.hypot(*way) > 1e-3)
+
+
+def spinning(times: np.ndarray) -> SpacePoses:
+    m = top.build(top.Params())
+    return SpacePoses(to_motion3(m.simulate(times=times), {"top": "#0b62a8"}, {}, {"top": "mechanism"}))
+
+
+def test_between_rows_the_film_shows_the_motion() -> None:
+    """Rows as far apart as the solve stage lets them be: a third of a radian."""
+    coarse, fine = np.linspace(0.0, 0.1, 91), np.linspace(0.0, 0.1, 361)
+    seen, exact = spinning(coarse), spinning(fine)
+    place, q = seen.over("top", fine)
+    wanted = exact.motion.bodies["top"]
+    assert np.abs(place - wanted.place).max() < 1e-7
+    assert np.abs(np.abs((q * wanted.quaternion).sum(axis=1)) - 1.0).max() < 1e-9
+    assert np.abs(np.linalg.norm(q, axis=1) - 1.0).max() < 1e-12
+
+
+@given(way=DIRECTIONS)
+def test_an_arrow_turns_to_its_direction_and_stays_in_a_plane(way: tuple[float, float, float]) -> None:
+    turned = turns_from_x(np.array([way]))
+    np.testing.assert_allclose(matrices(turned)[0][:, 0], np.array(way) / math.hypot(*way), atol=1e-7)
+    flat = turns_from_x(np.array([[way[0], way[1], 0.0]]))[0]
+    assert np.abs(flat[1:3]).max() < 1e-12 or math.hypot(*way[:2]) == 0.0
+
+
+@given(way=DIRECTIONS)
+def test_the_plane_of_an_arc_is_normal_to_its_axis_and_that_of_z_is_the_worlds(way: tuple[float, float, float]) -> None:
+    axis = np.array([way]) / math.hypot(*way)
+    x, y = across_axes(axis)
+    np.testing.assert_allclose(np.cross(x, y), axis, atol=1e-9)
+    np.testing.assert_allclose(np.hstack(across_axes(np.array([[0.0, 0.0, 1.0]]))), [[1, 0, 0, 0, 1, 0]], atol=1e-15)
+
+
+def test_signs_go_on_and_rotations_come_back() -> None:
+    angle = np.linspace(0.0, 4 * math.pi, 50)
+    q = np.stack([np.cos(angle / 2), np.sin(angle / 2), 0 * angle, 0 * angle], axis=1)
+    np.testing.assert_allclose(quaternion_of(matrices(q)), q, atol=1e-12)
+    jumping = q * np.where(np.arange(50) % 3 == 0, -1.0, 1.0)[:, None]
+    steady = going_on(jumping)
+    assert ((steady[1:] * steady[:-1]).sum(axis=1) > 0.0).all()
+
+
+def test_plots_and_skeleton_have_one_view() -> None:
+    np.testing.assert_allclose(pages.flat(np.eye(3)), drawing.view_rows().T, atol=1e-15)
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Out]:
+    """All stages before the pictures of one mechanism in space."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("MBSD_OUT", str(tmp_path_factory.mktemp("out")))
+        for run in (
+            parts_stage.run,
+            solve_stage.run,
+            clearance_stage.run,
+            shot_stage.run,
+            report.run,
+            plots.run,
+            glb.run,
+        ):
+            run("cardan_shaft")
+        yield Out("cardan_shaft")
+
+
+def test_one_command_makes_motion_parts_report_plots_and_glb(made: Out) -> None:
+    assert is_in_space(made.motion)
+    parts = read_parts(made.parts)
+    assert parts.mount.kind == "bench"
+    assert parts.bodies["cross_in"].link.joint == "cross_in"  # pyright: ignore[reportAttributeAccessIssue]
+    text = made.report.read_text()
+    assert "moves in space, has 1 degree of freedom and is driven by motor" in text
+    assert {path.stem for path in made.plots.glob("*.png")} == {"path", "bodies", "energy", "reactions"}
+    with pytest.raises(UserError, match="a mechanism in space, for which this is not there yet"):
+        read_motion(made.motion)
+    motion = read_film(made).in_space
+    assert motion is not None
+    assert all(body.mass > 0.0 for body in motion.bodies.values())
+
+
+def test_bodies_and_crosses_of_the_glb_move_as_data_json_has_them(made: Out) -> None:
+    film, file = read_film(made), GlbFile(made.glb.read_bytes())
+    names = [node["name"] for node in file.json["nodes"]]
+    assert {"input", "middle", "output", "cross_in", "cross_out", "ground"} <= set(names)
+    (clip,) = file.json["animations"]
+    tracks = {(names[c["target"]["node"]], c["target"]["path"]): c["sampler"] for c in clip["channels"]}
+    q = file.array(clip["samplers"][tracks["middle", "rotation"]]["output"])
+    assert film.in_space is not None
+    np.testing.assert_allclose(q, np.roll(film.in_space.bodies["middle"].quaternion, -1, axis=1), atol=1e-6)
+    assert ("ground", "rotation") not in tracks
+    place, turned = film.poses.over("cross_in", film.poses.time)
+    marker, other = (film.in_space.joints["cross_in"].markers[k] for k in (0, 1))
+    first = matrices(film.in_space.bodies["input"].quaternion) @ np.array(marker.axis)
+    second = matrices(film.in_space.bodies["middle"].quaternion) @ np.array(other.axis)
+    np.testing.assert_allclose(matrices(turned)[:, :, 0], first, atol=1e-9)
+    np.testing.assert_allclose(matrices(turned)[:, :, 1], second, atol=1e-9)
+    assert np.abs(place).max() < 1e-12
+
+
+def test_every_period_has_the_same_states_and_the_camera_holds_what_moves(made: Out) -> None:
+    film = read_film(made)
+    count = film.clock.frames
+    for frame in (0, 7, count - 1):
+        assert film.state(frame) == film.state(frame + count)
+    azimuth, elevation = (math.degrees(part) for part in (film.camera(0).azimuth, film.camera(0).elevation))
+    assert (azimuth, elevation) == pytest.approx((-34.0, 24.0))
+    seen = project(film.camera(0), film.space.machine, 16, 9) / (16, 9)
+    assert seen.min() > 0.0
+    assert seen.max() < 1.0
+
+
+def test_arrows_of_reactions_stand_where_joints_are_and_moments_turn_about_their_axes(made: Out) -> None:
+    film = read_film(made, "reactions")
+    motion = film.in_space
+    assert motion is not None
+    reactions = {vector.name: vector for vector in vectors_in_space(motion, ("reactions",))}
+    joint = motion.joints["bearing_out"]
+    np.testing.assert_array_equal(reactions["bearing_out"].value[:, 2], joint.fz)
+    for torque in torques_in_space(motion, ("reactions",)):
+        moment = np.stack([getattr(motion.joints[torque.name], name) for name in ("mx", "my", "mz")], axis=1)
+        np.testing.assert_allclose(torque.value[:, None] * torque.axes, moment, atol=1e-12)
+    state = film.state(3)
+    assert len(state.arrows) == len(film.arrows.vectors) > 0
+    assert all(math.isclose(math.hypot(*axis), 1.0, rel_tol=1e-9) for _, _, axis in state.arcs)
+
+
+def test_a_section_of_a_mechanism_in_space_raises_an_error(made: Out) -> None:
+    film = read_film(made)
+    cut = Film(film.in_space or film.motion, film.parts, Shot(section=0.4), Path(made.parts_folder))
+    with pytest.raises(UserError, match="section cuts mechanisms in the plane"):
+        _ = cut.scene

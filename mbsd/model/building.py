@@ -47,6 +47,7 @@ from mbsd.model.joints.curves import point_on_curve, rolling_disc, rolling_on_cu
 from mbsd.model.joints.gears import belt, gear_pair, rack_and_pinion
 from mbsd.model.joints.geneva import geneva
 from mbsd.model.joints.pairs import angle_lock, distance, pin_in_slot, prismatic, revolute, weld
+from mbsd.model.joints.ratios import ratio, travel_ratio, turn_ratio
 from mbsd.model.laws.function import checked_pulses
 from mbsd.model.mechanism import Model, StartVelocity, name_of, new_name, number_given, own_body, start_given
 
@@ -70,6 +71,9 @@ class Building(Model):
     cam_roller = cam_roller
     cam_flat = cam_flat
     geneva = geneva
+    ratio = ratio
+    turn_ratio = turn_ratio
+    travel_ratio = travel_ratio
     angle_lock = angle_lock
     constraint = constraint
     cable_span = cable_span

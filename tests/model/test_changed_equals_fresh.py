@@ -43,6 +43,7 @@ OTHERS: dict[str, list[Any]] = {
     "module": [0.02, None],
     "pitch": [0.03, None],
     "phase": [(0.2, 0.4), None],
+    "together": [(0.2, 0.4), None],
     "limits": [(-2.0, 1.5), (None, 3.0), None],
     "of_angle": [curve([-2.0, 0.0, 2.0], [1.0, 0.5, -3.0]), None],
     "of_length": [curve([0.1, 1.0, 5.0], [1.0, 0.5, -3.0]), None],

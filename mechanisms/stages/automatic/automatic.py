@@ -9,6 +9,7 @@ from functools import cached_property
 import cadquery as cq
 
 from mbsd import Mechanism, Solution
+from mbsd.model.joints.ratios import helper_bodies
 from mechanisms.stages.automatic import assembly
 from mechanisms.stages.automatic.body_shapes import Joined
 from mechanisms.stages.automatic.decision import decided
@@ -87,7 +88,7 @@ class Automatic:
         self._layers: dict[str, int] = {}
         self._replaced: dict[str, list[Solid]] = {}
         self._joined: list[Joined] = []
-        self._left_out: set[str] = set()
+        self._left_out: set[str] = helper_bodies(m)
         self._touching: set[tuple[str, str]] = set()
         self._marks: list[tuple[str, Mark]] = []
         self._base_under: list[Point] = []

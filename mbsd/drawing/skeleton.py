@@ -26,6 +26,7 @@ from mbsd.drawing.symbols.joints import draw_joint
 from mbsd.drawing.symbols.loads import draw_force, force_reach
 from mbsd.drawing.symbols.wheels import rim_of, ring_gear
 from mbsd.model.body import Marker
+from mbsd.model.cables import seen_span
 from mbsd.model.joint import Joint
 from mbsd.model.joints.ratios import helper_bodies
 from mbsd.model.mechanism import Model
@@ -81,7 +82,12 @@ def _without_helpers(m: Model) -> Model:
         return m
     out = copy.copy(m)
     out.bodies = {name: body for name, body in m.bodies.items() if name not in hidden}
-    out.joints = {name: joint for name, joint in m.joints.items() if not hidden.intersection(joint.bodies)}
+    out.joints = {
+        name: seen_span(m, joint) if "span" in joint.kind.constraints else joint
+        for name, joint in m.joints.items()
+        if "span" in joint.kind.constraints or not hidden.intersection(joint.bodies)
+    }
+    out.forces = {name: force for name, force in m.forces.items() if not hidden.intersection(force.bodies)}
     return out
 
 

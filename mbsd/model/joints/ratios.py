@@ -256,10 +256,16 @@ def _differential(m: Model, name: str, first: Side, second: Side, factor: float,
 
 
 def helper_bodies(m: Model) -> set[str]:
-    """Return the names of the bodies without mass that ratios have added: they have no parts and are not drawn."""
+    """Return the names of the bodies without mass that ratios and elastic cables have added.
+
+    They have no parts and are not drawn.
+    """
     rows = [f"{joint.name} " for joint in m.joints.values() if joint.kind in (TURN_RATIO, TRAVEL_RATIO)]
+    stretches = {force.j.body.name for force in m.forces.values() if force.kind.counts_turn}
     return {
-        body.name for body in m.bodies.values() if body.mass == 0.0 and any(body.name.startswith(row) for row in rows)
+        body.name
+        for body in m.bodies.values()
+        if body.mass == 0.0 and (body.name in stretches or any(body.name.startswith(row) for row in rows))
     }
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import mechanisms.stages.automatic.kinds  # noqa: F401  (enters them)
 from mbsd import Mechanism
+from mbsd.model.cables import seen_span
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
 from mbsd.model.joints.ratios import helper_bodies
@@ -64,6 +65,7 @@ def gathered(layout: Layout) -> list[Feature]:
     helpers = helper_bodies(m)
     for name, joint in m.joints.items():
         kind = joint.kind.name
+        joint = seen_span(m, joint) if "span" in joint.kind.constraints else joint
         if kind in SHAPELESS or helpers.intersection(joint.bodies):
             continue
         if layout.apart.intersection(joint.bodies) or (kind == ROD and joint not in layout.rods.values()):

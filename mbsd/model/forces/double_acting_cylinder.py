@@ -126,7 +126,7 @@ DOUBLE_ACTING_CYLINDER = register_force(
         along=lambda force: Element(AXIS, ()),
         states=States(("pressure_a", "pressure_b"), "Pa", _one, _start, _check),
         valved=Valved(volumes, _valve),
-        sign="strut",
+        sign="double acting",
         look="cylinder",
         example=_example,
     )

@@ -258,7 +258,7 @@ def cable_spring(
     clockwise: bool = False,
     slackens: bool = False,
 ) -> Force:
-    """Add the stretch of a cable between wheels of one ``radius`` (m) about the same centre: :func:`cable` adds them.
+    """Add the stretch of a cable between wheels of one ``radius`` (m) about the same centre.
 
     It pulls with ``preload`` (N) at the start, and with ``stiffness`` (N/m) and ``damping`` (N s/m) more as wheel j
     turns on counter-clockwise, or ``clockwise``; one that ``slackens`` never pushes.
@@ -295,7 +295,7 @@ def capstan(
     sticks: bool = True,
     slip_speed: float = 1e-3,
 ) -> Force:
-    """Add friction about a pin from the pulls of the spans ``before`` and ``after`` a wheel: :func:`cable` adds it.
+    """Add friction about a pin from the pulls of the spans ``before`` and ``after`` a wheel.
 
     ``coefficient`` of the cable on the wheel of this ``radius`` (m); ``turns``: whole turns beyond the angle between
     both spans. One that does not stick creeps below some ``slip_speed`` (m/s).

@@ -258,7 +258,7 @@ class ValvedView(ForceView):
 
 
 def valved_view(moved: Moved, view: ForceView, force: Force) -> ValvedView:
-    """The view of a force with what its chambers and its valve tell."""
+    """Return the view of a force with what its chambers and its valve tell."""
     valved, packed = force.kind.valved, moved.packed
     assert valved is not None
     assert view.value is not None

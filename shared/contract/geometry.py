@@ -122,7 +122,7 @@ type SpanWheel = tuple[str, float, float, float]
 
 
 def rows_of_spans(wheels: Mapping[str, tuple[SpanWheel | None, SpanWheel | None]]) -> list[list[str]]:
-    """Return the names of spans cable by cable: each begins on the wheel on which the one before ends.
+    """Return the names of spans by cable: each begins on the wheel on which the one before ends.
 
     ``wheels``: of each span the wheel on which it begins and that on which it ends; None of a point. Where a cable
     comes to a drum again, at another radius, a row of its own begins with that span: it lies beside the others.

@@ -37,7 +37,7 @@ CLEAR = 1e-9
 
 
 def _areas(force: Force) -> tuple[float, float]:
-    """Areas of the piston in chambers a and b (m^2)."""
+    """Return areas of the piston in chambers a and b (m^2)."""
     p = force.params
     return math.pi / 4 * p["bore"] ** 2, math.pi / 4 * (p["bore"] ** 2 - p["rod"] ** 2)
 
@@ -52,7 +52,7 @@ def volumes(force: Force, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _valve(force: Force, masses: Masses) -> tuple[str, float, float, float]:
-    """Return the valve's body, and its travel from its centre of mass in the axes of marker i: two factors, a sum."""
+    """Return the valve's body, and two factors and a sum that give its travel from its place."""
     joint = next((joint for joint in masses.joints if joint.name == force.params["valve"]), None)
     if joint is None or joint.i.body.name != force.i.body.name:
         raise ModelError(

@@ -55,7 +55,7 @@ TURN_RATIO = register_joint(
 def turn_ratio(
     m: Model, name: str, i: Marker, j: Marker, ratio: float, together: Sequence[float] | None = None
 ) -> Joint:
-    """Body j turns ``ratio`` times as much as body i, both against the body that pins hold at i and j.
+    """Make body j turn ``ratio`` times as much as body i, against the body that carries both by pins.
 
     ``together``: angles of both bodies against that one (rad) that belong together; by default those at the start. See
     :func:`ratio`, which finds the markers.
@@ -81,7 +81,7 @@ TRAVEL_RATIO = register_joint(
 def travel_ratio(
     m: Model, name: str, slider: Marker, wheel: Marker, travel: float, total: float | None = None
 ) -> Joint:
-    """Body ``slider`` moves by ``travel`` (m/rad) along its x axis for each radian that ``wheel`` turns.
+    """Make ``slider`` move by ``travel`` (m/rad) along its x axis for each radian that ``wheel`` turns.
 
     ``total``: x + travel a (m), of the place x of the wheel's marker along that axis and its angle a against it; by
     default what it is at the start. See :func:`ratio`, which finds the markers.
@@ -111,12 +111,12 @@ class Side(NamedTuple):
 
     @property
     def bodies(self) -> tuple[Body, Body]:
-        """The mover and the carrier."""
+        """Return the mover and the carrier."""
         return self.mover.body, self.carrier.body
 
     @property
     def swapped(self) -> Side:
-        """The same joint with the bodies in each other's role."""
+        """Return the same joint with the bodies in each other's role."""
         return Side(self.carrier, self.mover, -self.sign, self.slides)
 
 
@@ -282,7 +282,7 @@ class _Link(NamedTuple):
 
 
 def refuse_contradictions(m: Model) -> None:
-    """Raise ModelError where a ratio and other wheels hold two different ratios between the same two coordinates."""
+    """Raise ModelError where ratios, gears and racks hold two ratios between the same coordinates."""
     if not any(joint.kind in (TURN_RATIO, TRAVEL_RATIO) for joint in m.joints.values()):
         return
     links: dict[_Coordinate, list[_Link]] = {}

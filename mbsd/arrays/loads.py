@@ -22,7 +22,7 @@ from mbsd.compiling.callback import Callback
 from mbsd.equations.interactions import evaluation
 from mbsd.equations.interactions.law import RESULTS, STATE, address_of, switches
 from mbsd.equations.interactions.switching import APPROACHED, REMEMBERS, SIZE, SPEED_HERE, SWITCHING, VALUE, WIDTH
-from mbsd.equations.joint_friction import BY_RATE, GUIDE, PIN
+from mbsd.equations.joint_friction import BY_RATE, CAPSTAN, GUIDE, PIN, SLOT
 from mbsd.equations.laws import Laws
 from mbsd.equations.loads import Loads, remembers, stretches, tabulate_loads
 
@@ -33,8 +33,9 @@ if TYPE_CHECKING:
 
 COLUMNS = 9
 """Number of columns of Loads.interaction."""
-SHAPES = {"pin": PIN, "guide": GUIDE, "slot": 2}
+SHAPES = {"pin": PIN, "guide": GUIDE, "slot": SLOT}
 """Kernels' codes for the pairs of :attr:`mbsd.model.joint.JointKind.pair`."""
+TURN = 2.0 * math.pi
 SHARP = 1e-9
 """Slip speed, in sizes/s, of joints that stick, where no simulation looks for the events."""
 
@@ -117,7 +118,7 @@ def _interactions(packed: Packed, forces: Sequence[ForceRows]) -> tuple[np.ndarr
 
 
 def _friction(packed: Packed, forces: Sequence[ForceRows]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the table (f, 7) and the numbers (f, 8), for Loads."""
+    """Return the table (f, 7) and the numbers (f, 10), for Loads."""
     rows, numbers = [], []
     names = [joint.name for joint in packed.joints]
     sharp = SHARP * packed.size
@@ -128,11 +129,17 @@ def _friction(packed: Packed, forces: Sequence[ForceRows]) -> tuple[np.ndarray, 
             shape = SHAPES[packed.joints[k].kind.pair or ""]
             second = int(packed.system.marker_body[j] > 0)
             way = packed.first_row[names.index(name)] if name in names else -1
-            rows.append((shape, i, j, packed.first_row[k], packed.first_row[k + 1], second, way))
             slip_speed = sharp if p["sticks"] else p["slip_speed"]
+            if own.force.kind.of_spans:
+                before, after = (packed.first_row[names.index(p[span])] for span in ("before", "after"))
+                rows.append((CAPSTAN, i, j, before, after + 1, second, way))
+                wrapped = -p["coefficient"] if p["clockwise"] else p["coefficient"]
+                numbers.append((1.0, 1.0, 1.0, 0.0, slip_speed, 0.0, p["radius"], BY_RATE, wrapped, p["turns"] * TURN))
+                continue
+            rows.append((shape, i, j, packed.first_row[k], packed.first_row[k + 1], second, way))
             given = (p["coefficient"], p["static"], p["stribeck"], p["viscous"], slip_speed, p["preload"])
-            numbers.append((*given, p["radius"] if shape == PIN else p["length"], BY_RATE))
-    return np.array(rows, np.int64).reshape(-1, 7), np.array(numbers, float).reshape(-1, 8)
+            numbers.append((*given, p["radius"] if shape == PIN else p["length"], BY_RATE, 0.0, 0.0))
+    return np.array(rows, np.int64).reshape(-1, 7), np.array(numbers, float).reshape(-1, 10)
 
 
 def pack_user_forces(packed: Packed, forces: Sequence[ForceRows]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

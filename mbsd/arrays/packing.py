@@ -20,6 +20,7 @@ from mbsd.equations.products import spread_rows
 from mbsd.equations.system import System, Workspace, constant_system, workspace
 from mbsd.model.force import Force, Masses
 from mbsd.model.joint import ROWS, SPECIALS, ContactKind, Joint
+from mbsd.model.joints.ratios import refuse_contradictions
 from mbsd.model.laws import Motion
 from mbsd.model.mechanism import Model
 
@@ -301,6 +302,7 @@ class Packed:
 
 def pack(m: Model, contacts: Sequence[Joint] = ()) -> Packed:
     """Build the arrays of a mechanism, with rows for ``contacts`` after all others."""
+    refuse_contradictions(m)
     bodies = list(m.bodies.values())
     number = {body.name: k for k, body in enumerate(bodies)}
     joints = [*m.joints.values(), *m.drivers.values(), *contacts]

@@ -65,6 +65,10 @@ def started_at(m: AnyModel, packed: Packed, q: np.ndarray, v: np.ndarray, states
             own = states[own_states(packed.forces, force.name)].tolist()
             params = {**force.params, **dict(zip(force.kind.states.names, own, strict=True))}
             out.forces[force.name] = replace(force, params=params)
+        if force.kind.restarted is not None:
+            _, first, second = world_angles(packed, force, q)
+            params = force.kind.restarted(force, second - first - packed.phases.get(force.name, second - first))
+            out.forces[force.name] = replace(force, params={**force.params, **params})
         if force.kind.ideal is not None:
             out.forces[force.name] = replace(force, params=placed_params(packed, force, q))
     out.starts, out.velocities = {}, {}
@@ -82,6 +86,9 @@ def started_at(m: AnyModel, packed: Packed, q: np.ndarray, v: np.ndarray, states
 def take_force_phases(packed: Packed, q: np.ndarray) -> None:
     """Take the constants of all meshes from the start pose q (3 nb,)."""
     for force in packed.forces:
+        if force.kind.counts_turn:
+            _, first, second = world_angles(packed, force, q)
+            packed.phases[force.name] = second - first
         if force.kind.mesh is not None:
             line, first, second = world_angles(packed, force, q)
             phase = force.params["phase"]

@@ -95,6 +95,8 @@ def refuse(first: Course) -> None:
                 f"{packed.name}: derivatives of simulations with the cycle of a gas ('{force.name}'), whose pressure "
                 "jumps on the way, are not known; those of a sweep are"
             )
+        if force.kind.of_spans:
+            raise ModelError(f"{packed.name}: derivatives where cables rub on wheels ('{force.name}') are not known")
         if force.params.get("sticks"):
             raise ModelError(
                 f"{packed.name}: derivatives where joints stick ('{force.name}') are not known; give a slip_speed"

@@ -5,6 +5,7 @@ Pictures of one motion share a :class:`Steady`: extent, size of the symbols, sid
 
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -25,7 +26,9 @@ from mbsd.drawing.symbols.joints import draw_joint
 from mbsd.drawing.symbols.loads import draw_force, force_reach
 from mbsd.drawing.symbols.wheels import rim_of, ring_gear
 from mbsd.model.body import Marker
+from mbsd.model.cables import seen_span
 from mbsd.model.joint import Joint
+from mbsd.model.joints.ratios import helper_bodies
 from mbsd.model.mechanism import Model
 from mbsd.pictures import Picture
 
@@ -72,8 +75,25 @@ def draw(m: Model, pose: Pose, ax: Axes | None, frames: bool, names: bool) -> Pi
     return picture
 
 
+def _without_helpers(m: Model) -> Model:
+    """Return the model without the bodies that ratios have added, and their joints; itself if it has none."""
+    hidden = helper_bodies(m)
+    if not hidden:
+        return m
+    out = copy.copy(m)
+    out.bodies = {name: body for name, body in m.bodies.items() if name not in hidden}
+    out.joints = {
+        name: seen_span(m, joint) if "span" in joint.kind.constraints else joint
+        for name, joint in m.joints.items()
+        if "span" in joint.kind.constraints or not hidden.intersection(joint.bodies)
+    }
+    out.forces = {name: force for name, force in m.forces.items() if not hidden.intersection(force.bodies)}
+    return out
+
+
 def measure(m: Model, pose: Pose) -> tuple[np.ndarray, np.ndarray, float]:
     """Return lowest and highest x, y (m) of all that is drawn, and the unit of the symbols (m)."""
+    m = _without_helpers(m)
     points = {name: _points(m, pose, name) for name in m.bodies}
     wide = [reach(joint, pose) for joint in m.joints.values() if not pose.gone(joint.name)]
     loads = [force_reach(force, pose, list(m.joints.values())) for force in m.forces.values()]
@@ -87,6 +107,7 @@ def measure(m: Model, pose: Pose) -> tuple[np.ndarray, np.ndarray, float]:
 
 def measure_all(m: Model, poses: Sequence[Pose]) -> tuple[np.ndarray, np.ndarray, float]:
     """Return the same over several poses, in symbols of one size."""
+    m = _without_helpers(m)
     lows, highs, _ = zip(*(measure(m, pose) for pose in poses), strict=True)
     low, high = np.min(lows, axis=0), np.max(highs, axis=0)
     lengths = [{name: _points(m, pose, name) for name in m.bodies} for pose in poses]
@@ -105,6 +126,8 @@ def draw_on(
 
     ``colours``: by body. ``sides``: where ground's signs go, by joint; by default where there is room in this pose.
     """
+    m = _without_helpers(m)
+    colours = {name: colour for name, colour in colours.items() if name in m.bodies}
     points, unit = {name: _points(m, pose, name) for name in m.bodies}, canvas.unit
     for name in colours:
         with canvas.on(on_body(name)):
@@ -135,6 +158,7 @@ def draw_on(
 
 def steady_sides(m: Model, poses: Sequence[Pose], unit: float) -> dict[str, np.ndarray]:
     """Return, by joint, the unit direction of ground's sign that has room in all of these poses."""
+    m = _without_helpers(m)
     leaving: dict[str, list[float]] = {}
     for pose in poses:
         points = {name: _points(m, pose, name) for name in m.bodies}

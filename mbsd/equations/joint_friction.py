@@ -19,13 +19,15 @@ import math
 from mbsd.compiling.jit import internal, kernel, lazy
 from mbsd.equations.system import move, place
 
-PIN, GUIDE = 0, 1
-"""Places in FRICTION_JOINTS; the third is a pin in a slot."""
+PIN, GUIDE, SLOT, CAPSTAN = range(4)
+"""Shapes. Of a capstan the rows FIRST and END - 1 are the spans before and after it; see model/cables.py."""
 SHAPE, MARKER_I, MARKER_J, FIRST, END, SECOND, WAY = range(7)
 """Columns of a row: shape, markers, rows of the joint, 1 where body j moves (else the reaction on body i is read), the
 row that holds the joint while it sticks, -1 where there is none."""
-COEFFICIENT, STATIC, STRIBECK, VISCOUS, SLIP_SPEED, PRELOAD, SIZE, SENSE = range(8)
-"""Columns of its numbers; SIZE: radius of a pin, length of a guide; SENSE: see BY_RATE."""
+COEFFICIENT, STATIC, STRIBECK, VISCOUS, SLIP_SPEED, PRELOAD, SIZE, SENSE, WRAPPED, TURNS = range(10)
+"""Columns of its numbers; SIZE: radius of a pin, length of a guide; SENSE: see BY_RATE. Of a capstan, WRAPPED is the
+friction of the cable, negative where it turns clockwise, and TURNS are whole ones beyond the angle between its spans
+(rad)."""
 BY_RATE, NONE = 2.0, 0.0
 """Senses beside 1 and -1, the sign of a sliding that an event ends: friction by the rate alone; none (it sticks, or its
 joint is released)."""
@@ -46,6 +48,31 @@ MOST_PASSES = 100
 
 
 @internal
+def turns_about(shape):
+    """Return True if the friction of this shape is a torque about a point."""
+    return shape in (PIN, CAPSTAN)
+
+
+@internal
+def _capstan(loads, jac, lam, k):
+    """Return (T_1 + T_2) tanh(mu wrap / 2) of joint k (N), which is the largest |T_2 - T_1|."""
+    before = loads.friction[k, FIRST]
+    after = loads.friction[k, END] - 1
+    bx = jac[before, 3]
+    by = jac[before, 4]
+    ax = -jac[after, 0]
+    ay = -jac[after, 1]
+    friction = loads.friction_number[k, WRAPPED]
+    turned = math.atan2(bx * ay - by * ax, bx * ax + by * ay)
+    if friction < 0.0:
+        turned = -turned
+    if turned < 0.0:
+        turned += 2.0 * math.pi
+    wrap = turned + loads.friction_number[k, TURNS]
+    return abs(lam[before] + lam[after]) * math.tanh(0.5 * abs(friction) * wrap)
+
+
+@internal
 def normal_forces(loads, ws, jac, lam, out):
     """Fill out (f,) with normal forces (N) at multipliers lam (m,) and compact J (m, 6), after place."""
     for k in range(loads.friction.shape[0]):
@@ -60,6 +87,9 @@ def normal_forces(loads, ws, jac, lam, out):
             fy += jac[r, side + 1] * lam[r]
             torque += jac[r, side + 2] * lam[r]
         shape = loads.friction[k, SHAPE]
+        if shape == CAPSTAN:
+            out[k] = _capstan(loads, jac, lam, k)
+            continue
         if shape == PIN:
             out[k] = math.sqrt(fx * fx + fy * fy)
             continue
@@ -81,7 +111,7 @@ def rate_of(system, loads, v, ws, k):
     j = loads.friction[k, MARKER_J]
     bi = 3 * system.marker_body[i]
     bj = 3 * system.marker_body[j]
-    if loads.friction[k, SHAPE] == PIN:
+    if turns_about(loads.friction[k, SHAPE]):
         return v[bj + 2] - v[bi + 2]
     dx = ws.position[j, 0] - ws.position[i, 0]
     dy = ws.position[j, 1] - ws.position[i, 1]
@@ -99,7 +129,7 @@ def friction_of(loads, k, rate, normal, whole):
     sense = number[SENSE]
     if sense == NONE:
         return 0.0
-    lever = number[SIZE] if loads.friction[k, SHAPE] == PIN else 1.0
+    lever = number[SIZE] if turns_about(loads.friction[k, SHAPE]) else 1.0
     slip = lever * rate
     if sense == BY_RATE:
         sense = math.tanh(slip / number[SLIP_SPEED])
@@ -123,7 +153,7 @@ def apply_friction(system, loads, v, ws, normal, whole, load):
         j = loads.friction[k, MARKER_J]
         bi = 3 * system.marker_body[i]
         bj = 3 * system.marker_body[j]
-        if loads.friction[k, SHAPE] == PIN:
+        if turns_about(loads.friction[k, SHAPE]):
             load[bj + 2] += force
             load[bi + 2] -= force
             continue

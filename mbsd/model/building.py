@@ -14,7 +14,7 @@ from mbsd.base.arguments import several_numbers
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such, shown
 from mbsd.model.body import Body, Marker
-from mbsd.model.cables import cable, cable_span, over, slack_span
+from mbsd.model.cables import cable, cable_span, cable_spring, capstan, over, slack_span
 from mbsd.model.contacts import (
     angle_stop,
     coordinate_stop,
@@ -31,6 +31,7 @@ from mbsd.model.force import Force
 from mbsd.model.forces.clearance_joint import clearance_joint
 from mbsd.model.forces.contact import contact, tyre
 from mbsd.model.forces.curves import curve_of_angle, curve_of_length, motor
+from mbsd.model.forces.double_acting_cylinder import double_acting_cylinder
 from mbsd.model.forces.fields import drag, gravitation, rotating_frame
 from mbsd.model.forces.friction import friction
 from mbsd.model.forces.gas import gas, gas_strut
@@ -47,6 +48,7 @@ from mbsd.model.joints.curves import point_on_curve, rolling_disc, rolling_on_cu
 from mbsd.model.joints.gears import belt, gear_pair, rack_and_pinion
 from mbsd.model.joints.geneva import geneva
 from mbsd.model.joints.pairs import angle_lock, distance, pin_in_slot, prismatic, revolute, weld
+from mbsd.model.joints.ratios import ratio, travel_ratio, turn_ratio
 from mbsd.model.laws.function import checked_pulses
 from mbsd.model.mechanism import Model, StartVelocity, name_of, new_name, number_given, own_body, start_given
 
@@ -70,6 +72,9 @@ class Building(Model):
     cam_roller = cam_roller
     cam_flat = cam_flat
     geneva = geneva
+    ratio = ratio
+    turn_ratio = turn_ratio
+    travel_ratio = travel_ratio
     angle_lock = angle_lock
     constraint = constraint
     cable_span = cable_span
@@ -90,6 +95,8 @@ class Building(Model):
     spring_law = spring_law
     torsion_spring_law = torsion_spring_law
     bushing = bushing
+    cable_spring = cable_spring
+    capstan = capstan
     torque = torque
     force = force
     actuator = actuator
@@ -101,6 +108,7 @@ class Building(Model):
     gas_cycle = gas_cycle
     gas_strut = gas_strut
     hydraulic_cylinder = hydraulic_cylinder
+    double_acting_cylinder = double_acting_cylinder
     contact = contact
     clearance_joint = clearance_joint
     gear_mesh = gear_mesh

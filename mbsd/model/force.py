@@ -124,6 +124,15 @@ class States:
     a motion that cannot be, SimulationError for one that long steps spoiled, and warns of one that should not be."""
 
 
+class Valved(NamedTuple):
+    """Two chambers whose pressures are its states, and the valve that leads gas into them."""
+
+    volumes: Callable[[Force, np.ndarray], tuple[np.ndarray, np.ndarray]]
+    """Function of what the force measures (T,): volumes of both chambers (T,) (m^3)."""
+    valve: Callable[[Force, Masses], tuple[str, float, float, float]]
+    """The valve's body, and its travel from its centre of mass in the axes of marker i: two factors and a sum (m)."""
+
+
 class Masses(NamedTuple):
     """Bodies and their masses, ground first, and what joins them."""
 
@@ -184,6 +193,10 @@ class ForceKind(ByName):
     """Radius (m) of a journal about marker j in a bearing about marker i, and its radial clearance (m)."""
     mesh: Mesh | None = None
     """Position in their teeth of gears with play."""
+    counts_turn: bool = False
+    """True if the angle of marker j against marker i counts from the start pose."""
+    restarted: Callable[[Force, float], Mapping[str, Any]] | None = None
+    """Function of how far its angle has turned since (rad): params with which it goes on from there."""
     ideal: Callable[[Force], Joint | None] | None = None
     """The joint whose place it takes, which holds at the start alone; None of a force that starts as bodies do."""
     press: Callable[[Force], Press | None] | None = None
@@ -194,12 +207,16 @@ class ForceKind(ByName):
     """The gas behind a piston that its effort comes from, if it does."""
     states: States | None = None
     """States that it carries through a motion beside coordinates and velocities; it then acts ``along`` a line."""
+    valved: Valved | None = None
+    """The chambers and the valve of a double-acting cylinder, if it is one."""
     oil: Callable[[Force], OilCylinder] | None = None
     """The cylinder of oil that its effort and its states come from, if they do."""
     outside: bool = False
     """True if it is a load from outside, to which nothing in the mechanism feels the opposite."""
     of_reactions: bool = False
     """True if it is friction, which comes from the reaction of a joint; see mbsd/equations/joint_friction.py."""
+    of_spans: bool = False
+    """True if it is friction under a cable, which comes from the pulls of the spans ``before`` and ``after``."""
     on_bodies: bool = False
     """True if it acts on bodies as a whole, and its markers are no places."""
     look: str = ""

@@ -56,6 +56,7 @@ class Special:
 
 SPECIALS: dict[str, Special] = {
     "gear": Special("gear", "m", phased=True),
+    "turns": Special("gear", "rad", phased=True),
     "rack": Special("linear", "m", phased=True),
     "span": Special("span", "m", phased=True),
     "height": Special("linear", "m"),

@@ -23,6 +23,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from mbsd.arrays.laws import compiled_laws, law_values
+from mbsd.arrays.reactions import marker_axes, marker_places
 from mbsd.arrays.states import own_states
 from mbsd.model.force import Chamber, CrankCycle, Force
 from mbsd.model.laws.numbers import hermite_coefficients
@@ -219,3 +220,75 @@ def hydraulic_view(moved: Moved, view: ForceView, force: Force) -> HydraulicView
         oil_power=a * squeezed_a + b * squeezed_b,
         piston_power=(a * oil.area_a - b * oil.area_b) * view.rate,
     )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ValvedView(ForceView):
+    """Results of a double-acting cylinder, (T,) arrays; pressures are absolute. Chamber A is the one without a rod."""
+
+    pressure_a: np.ndarray
+    """Pa"""
+    pressure_b: np.ndarray
+    volume_a: np.ndarray
+    """m^3"""
+    volume_b: np.ndarray
+    valve: np.ndarray
+    """Travel of the valve from its middle, positive where it leads the supply into chamber A (m)."""
+    valve_events: tuple[tuple[float, str], ...]
+    """Times (s) and names: admission, cut-off, release, compression, of A or B."""
+
+    @property
+    def work(self) -> tuple[float, float]:
+        """Work of the gas in chambers A and B over the motion (J), the integrals of p dV by the trapezium rule."""
+        a, b = (
+            float((0.5 * (p[1:] + p[:-1]) * np.diff(volume)).sum())
+            for p, volume in ((self.pressure_a, self.volume_a), (self.pressure_b, self.volume_b))
+        )
+        return a, b
+
+    def columns(self, title: str) -> dict[str, np.ndarray]:
+        """Return the columns of a force, with pressures, volumes and the valve."""
+        return super().columns(title) | {
+            f"{title}.pressure_a [Pa]": self.pressure_a,
+            f"{title}.pressure_b [Pa]": self.pressure_b,
+            f"{title}.volume_a [m^3]": self.volume_a,
+            f"{title}.volume_b [m^3]": self.volume_b,
+            f"{title}.valve [m]": self.valve,
+        }
+
+
+def valved_view(moved: Moved, view: ForceView, force: Force) -> ValvedView:
+    """Return the view of a force with what its chambers and its valve tell."""
+    valved, packed = force.kind.valved, moved.packed
+    assert valved is not None
+    assert view.value is not None
+    own = {field.name: getattr(view, field.name) for field in fields(ForceView)}
+    states = np.zeros((len(moved.t), 2))
+    if moved.states is not None:
+        states = moved.states[:, own_states(packed.forces, force.name)]
+    body, along, across, begin = valved.valve(force, packed.masses)
+    i, _ = packed.markers_of(force)
+    b = 3 * packed.body_names.index(body)
+    away = moved.q[:, b : b + 2] - marker_places(packed, moved.q, i)
+    x, y = ((marker_axes(packed, moved.q, i, turned) * away).sum(axis=1) for turned in (False, True))
+    travel = (along * x + across * y + begin) * (-1.0 if force.params["inside"] else 1.0)
+    volume_a, volume_b = valved.volumes(force, view.value)
+    events = _valve_events(moved.t, travel, force.params["lap"], force.params["exhaust_lap"])
+    return ValvedView(
+        **own, pressure_a=states[:, 0].copy(), pressure_b=states[:, 1].copy(), volume_a=volume_a, volume_b=volume_b,
+        valve=travel, valve_events=events,
+    )  # fmt: skip
+
+
+def _valve_events(t: np.ndarray, travel: np.ndarray, lap: float, exhaust_lap: float) -> tuple[tuple[float, str], ...]:
+    """Return when ports open and close along a travel (T,), between rows by straight lines."""
+    out: list[tuple[float, str]] = []
+    for chamber, own in (("A", travel), ("B", -travel)):
+        for opens, closes, beyond in (
+            ("admission", "cut-off", own - lap), ("release", "compression", -own - exhaust_lap),
+        ):  # fmt: skip
+            for k in np.flatnonzero((beyond[1:] > 0.0) != (beyond[:-1] > 0.0)):
+                part = beyond[k] / (beyond[k] - beyond[k + 1])
+                name = opens if beyond[k + 1] > 0.0 else closes
+                out.append((float(t[k] + part * (t[k + 1] - t[k])), f"{name} {chamber}"))
+    return tuple(sorted(out))

@@ -30,7 +30,7 @@ from mbsd.base.codes import AXIS, LAW_VALUE, LINE, LINEAR, POTENTIAL_TERMS, POWE
 from mbsd.equations.loads import stretches, tabulate_loads
 from mbsd.model.force import Element, Force, Term
 from mbsd.model.laws.curve import Curve
-from mbsd.results.fluids import gas_view, hydraulic_view
+from mbsd.results.fluids import gas_view, hydraulic_view, valved_view
 from mbsd.results.force_view import ForceView
 from mbsd.results.friction import friction_view
 from mbsd.results.measured import Moved, depths, foot_of, measured
@@ -82,6 +82,8 @@ def force_view(moved: Moved, name: str, effort: np.ndarray | None = None) -> For
     )
     if force.kind.oil is not None:
         return hydraulic_view(moved, view, force)
+    if force.kind.valved is not None:
+        return valved_view(moved, view, force)
     if chamber is None:
         return view
     return gas_view(moved, view, chamber(force, packed.masses), lambda at: loads_of(at, k)[1])

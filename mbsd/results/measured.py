@@ -133,8 +133,10 @@ def gaps_of(packed: Packed, force: Force, q: np.ndarray) -> list[float]:
 def depths(packed: Packed, force: Force, q: np.ndarray) -> np.ndarray:
     """(k, T) depth (m) of the disc in the surface, of both flanks of gears, 0 where they do not touch.
 
-    Along poses q (T, 3 nb).
+    Along poses q (T, 3 nb). Of what counts its turn it is that turn (rad).
     """
+    if force.kind.counts_turn:
+        return (relative_poses(packed, force, q)[2] - packed.phases.get(force.name, 0.0))[None]
     if force.kind.mesh is not None:
         phase = packed.phases.get(force.name, 0.0)
         return force.kind.mesh.flanks(force, phase, *relative_poses(packed, force, q)).clip(min=0.0)

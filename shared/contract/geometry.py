@@ -117,19 +117,29 @@ def span_ends(first: Array, second: Array, radii: tuple[float, float]) -> Array:
     return np.stack([first - radii[0] * left, second - radii[1] * left], axis=-2)
 
 
-def rows_of_spans[Wheel](wheels: Mapping[str, tuple[Wheel | None, Wheel | None]]) -> list[list[str]]:
-    """Return the names of spans cable by cable: each begins on the wheel on which the one before ends.
+type SpanWheel = tuple[str, float, float, float]
+"""Body, place on it and signed radius of a wheel of a cable."""
 
-    ``wheels``: of each span the wheel on which it begins and that on which it ends; None of a point.
+
+def rows_of_spans(wheels: Mapping[str, tuple[SpanWheel | None, SpanWheel | None]]) -> list[list[str]]:
+    """Return the names of spans by cable: each begins on the wheel on which the one before ends.
+
+    ``wheels``: of each span the wheel on which it begins and that on which it ends; None of a point. Where a cable
+    comes to a drum again, at another radius, a row of its own begins with that span: it lies beside the others.
     """
     rows: list[list[str]] = []
-    for name, (first, _) in wheels.items():
+    for name, (first, last) in wheels.items():
         row = next((row for row in rows if first is not None and wheels[row[-1]][1] == first), None)
-        if row is None:
+        if row is None or any(_stepped(last, end) for other in row for end in wheels[other]):
             rows.append([name])
         else:
             row.append(name)
     return rows
+
+
+def _stepped(one: SpanWheel | None, other: SpanWheel | None) -> bool:
+    """Return True for two wheels of different radii about one place of a body."""
+    return one is not None and other is not None and one[:3] == other[:3] and abs(one[3]) != abs(other[3])
 
 
 def _ray(angle: Array | float) -> Array:

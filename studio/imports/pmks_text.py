@@ -13,7 +13,7 @@ from itertools import pairwise
 from shared.contract.quantity import counted
 from shared.stage.errors import UserError
 from studio.imports.limits import check_count, check_length, parsed_json
-from studio.imports.sketch import GROUND, Motor, Place, Sketch, Slide
+from studio.imports.sketch import GROUND, Motor, Place, Push, Sketch, Slide
 
 UNIT = 0.001
 """m"""
@@ -91,7 +91,9 @@ def _drive(sketch: Sketch, label: str, joint: _Joint, links: list[str], speed: f
             f"input {label}: {counted(len(links), 'link')} meet there, so it does not say which of them turns"
         )
     else:
-        sketch.left_out.append(f"input {label}: only pins are driven here; m.drive_coordinate drives a slider")
+        guide, *riders = sorted(links, key=lambda link: link != GROUND)
+        sketch.pushes.append(Push("motor", guide, riders[0], joint.place, joint.angle, speed * UNIT))
+        sketch.left_out.append(f"input {label}: it slides on at {speed * UNIT:g} m/s beyond any end; change its law")
 
 
 def _joint_of(line: str) -> _Joint | None:

@@ -20,7 +20,12 @@ IN_A_MACHINE = {"gear_mesh", "gear_pair", "geneva", "rack_and_pinion"}
 """Kinds whose places must suit each other: their machines are below."""
 SWITCHING = ("clearance_joint", "contact", "tyre")
 """Kinds whose force has kinks on the way of their example, which cost digits."""
-REFUSED = {"hydraulic_cylinder": "states of forces", "gas_cycle": "cycle of a gas"}
+REFUSED = {
+    "hydraulic_cylinder": "states of forces",
+    "double_acting_cylinder": "states of forces",
+    "gas_cycle": "cycle of a gas",
+    "capstan": "cables rub on wheels",
+}
 PLACES = ("example.i.x", "example.j.x", "example.j.y")
 OWN = {
     "belt": "radius_i",

@@ -26,7 +26,7 @@ def _mixed(seed: int) -> Mechanism:
     for k in random.permutation(len(kinds)).tolist():
         kind, (a, b) = kinds[k], random.choice(6, 2, replace=False)
         assert kind.example is not None
-        if kind.of_reactions and any(force.kind is kind for force in m.forces.values()):
+        if (kind.of_reactions or kind.valved) and any(force.kind is kind for force in m.forces.values()):
             continue  # its example adds a joint of one name
         kind.example(m, bodies[a].at(*random.normal(size=3)), bodies[b].at(*random.normal(size=3)))
         force = m.forces.pop("example")

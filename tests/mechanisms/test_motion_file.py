@@ -275,8 +275,8 @@ def _examples() -> dict[str, Mechanism]:
 
     examples = {}
     for kind in (*FORCE_KINDS.values(), *CONTACT_KINDS.values()):
-        if kind.name in ("friction", "rigid_contact"):
-            continue  # their examples do not fit here; both are in the tests above
+        if kind.name in ("friction", "capstan", "rigid_contact"):
+            continue  # their examples do not fit here
         m = Mechanism("example")
         i = m.bar("a", 0.4, mass=1.0)
         j = m.bar("b", 0.3, mass=0.5)
@@ -295,7 +295,8 @@ EXAMPLES = _examples()
 @pytest.mark.parametrize("kind", EXAMPLES)
 def test_every_kind_of_force_and_contact_reaches_the_file(kind: str, tmp_path: Path) -> None:
     solution = EXAMPLES[kind].simulate(0.01, steps=4, event_rows=True)
-    motion = to_motion(solution, None, "key", {}, {"a": "mechanism", "b": "mechanism"})
+    sources = dict.fromkeys(set(EXAMPLES[kind].bodies) - {"ground"}, "mechanism")
+    motion = to_motion(solution, None, "key", {}, sources)  # pyright: ignore[reportArgumentType]
     contract.write_motion(tmp_path / "data.json", motion)
     again = contract.read_motion(tmp_path / "data.json")
     assert again == motion

@@ -43,6 +43,8 @@ OTHERS: dict[str, list[Any]] = {
     "module": [0.02, None],
     "pitch": [0.03, None],
     "phase": [(0.2, 0.4), None],
+    "together": [(0.2, 0.4), None],
+    "turns": [1, 2],
     "limits": [(-2.0, 1.5), (None, 3.0), None],
     "of_angle": [curve([-2.0, 0.0, 2.0], [1.0, 0.5, -3.0]), None],
     "of_length": [curve([0.1, 1.0, 5.0], [1.0, 0.5, -3.0]), None],
@@ -228,6 +230,7 @@ def test_every_argument_alone_and_in_pairs(kind: Any) -> None:
         {"restitution"} if kind.name in ("contact", "clearance_joint", "gear_mesh") else set()
     )  # in place of damping: below
     in_groups |= {"modulus", "journal_modulus"} if kind.name == "clearance_joint" else set()  # of stiffness: below
+    in_groups |= {"before", "after", "valve"}  # names of other joints
     in_groups |= {"orifice"} if kind.name == "hydraulic_cylinder" else set()  # in place of rated_flow: below
     assert accepted | in_groups >= set(own), f"never changed: {set(own) - accepted}"
 

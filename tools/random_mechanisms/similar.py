@@ -32,6 +32,8 @@ DIMENSIONS: dict[str, dict[str, Dimension]] = {
     "belt": {"radius_i": LENGTH, "radius_j": LENGTH, "phase": RATIO},
     "cable_span": {"radius_i": LENGTH, "radius_j": LENGTH},
     "slack_span": {"radius_i": LENGTH, "radius_j": LENGTH, "slack": LENGTH, "restitution": RATIO},
+    "turn_ratio": {"ratio": RATIO, "together": RATIO},
+    "travel_ratio": {"travel": LENGTH, "total": LENGTH},
     "rolling_disc": {"radius": LENGTH, "phase": RATIO},
     "drive_angle": {},
     "drive_relative_angle": {},
@@ -45,14 +47,14 @@ DIMENSIONS: dict[str, dict[str, Dimension]] = {
     "rigid_contact": {"radius": LENGTH, "restitution": RATIO, "friction": RATIO, "static_friction": RATIO},
 }
 """Numbers of the kinds that can be given in other units; ``law``: of all laws and motions."""
-TURNED = {"free_angle", "phase", "fires_at", "offset", "direction"}
+TURNED = {"free_angle", "phase", "fires_at", "offset", "direction", "travel", "together"}
 """Numbers that have the other sign in a mirror: angles, and what counts to the left."""
 ANGULAR = {"torque", "drive_angle", "drive_relative_angle"}
 """Kinds whose laws have the other sign in a mirror."""
 MIRRORED = {
     "revolute", "weld", "prismatic", "pin_in_slot", "distance", "angle_lock", "gear_pair", "belt", "bushing", "spring",
     "torsion_spring", "force", "drive_coordinate", "drive_distance", "gravitation", "rope", "rigid_discs", "gas_cycle",
-    "cable_span", "slack_span",
+    "cable_span", "slack_span", "turn_ratio", "travel_ratio",
 } | ANGULAR  # fmt: skip
 """Kinds that have no side of their own, as the upper one of a line."""
 

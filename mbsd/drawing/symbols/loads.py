@@ -43,6 +43,9 @@ def draw_force(canvas: Canvas, force: Force, pose: Pose, joints: Sequence[Joint]
     if force.kind.sign == "strut":
         draw_strut(canvas, force, pose)
         return
+    if force.kind.sign == "double acting":
+        _double_acting(canvas, force, pose)
+        return
     if force.kind.sign == "clearance":
         _journal(canvas, force, pose)
         return
@@ -249,6 +252,20 @@ def _barrel(
     since = cylinder.sense * (crank - frame - cylinder.fires_at)
     head = cylinder.top - cylinder.bore.clearance
     return here, head, low, force.params["cycle"].openings(since, cylinder.bore)
+
+
+def _double_acting(canvas: Canvas, force: Force, pose: Pose) -> None:
+    """Draw the barrel on the first body, and on the second the piston, as wide as the bore."""
+    origin, u = pose.place(force.i), pose.axis(force.i)
+    n, half, stroke = np.array([-u[1], u[0]]), 0.5 * force.params["bore"], force.params["stroke"]
+    here = float((pose.place(force.j) - origin) @ u)
+    beside = 0.12 * half
+    box = [(-beside, -half), (stroke + beside, -half), (stroke + beside, half), (-beside, half), (-beside, -half)]
+    with canvas.on(at_place(force.i)):
+        canvas.line([origin + x * u + y * n for x, y in box], LOAD, 1.4, order=3)
+    canvas.line([origin + here * u + side * 0.92 * half * n for side in (-1.0, 1.0)], LOAD, 2.6, order=3.1)
+    with canvas.on(at_place(force.i)):
+        canvas.label(force.name, origin + 0.5 * stroke * u + half * n, 0.6, LOAD)
 
 
 def draw_strut(canvas: Canvas, force: Force, pose: Pose) -> None:

@@ -76,6 +76,10 @@ def apply(interaction, n, given, state, out, switches, t, q, v, cos_sin, load):
         crank = 3 * interaction[row + 6] + 2
         state[law.CRANK] = q[crank] - q[i + 2]
         state[law.CRANK_RATE] = v[crank] - omega
+        away_x = q[crank - 2] - q[i] - arm_ix
+        away_y = q[crank - 1] - q[i + 1] - arm_iy
+        state[law.BODY_X] = ux * away_x + uy * away_y
+        state[law.BODY_Y] = ux * away_y - uy * away_x
         state[law.TIME] = t
         state[law.LAW] = switches[own + switching.LAW_HERE]
         state[law.LAW_RATE] = switches[own + switching.LAW_RATE_HERE]

@@ -38,7 +38,9 @@ APPROACH = 24
 """Place in ``state``: SPEED where SWITCH last went above 0 (m/s), not a number before it ever did: see switching.py."""
 CRANK, CRANK_RATE = 25, 26
 """Places in ``state``: angle and rate of the interaction's crank against body i (rad, rad/s)."""
-OWN_STATE = 27
+BODY_X, BODY_Y = 27, 28
+"""Places in ``state``: centre of mass of that body in the axes of marker i (m)."""
+OWN_STATE = 29
 """The first of the states that the force itself carries, as speeds (mbsd/arrays/states.py)."""
 STATE = OWN_STATE + MOST_STATES
 """Numbers of a state."""
@@ -50,7 +52,7 @@ RESULTS = RATE + MOST_STATES
 """Numbers of ``out``."""
 
 __all__ = [
-    "APPROACH", "CRANK", "CRANK_RATE", "FX", "FY", "LAW", "LAW_RATE", "OMEGA", "OWN", "OWN_STATE",
+    "APPROACH", "BODY_X", "BODY_Y", "CRANK", "CRANK_RATE", "FX", "FY", "LAW", "LAW_RATE", "OMEGA", "OWN", "OWN_STATE",
     "POWER", "RATE", "RESULTS", "SIDE", "SPEED", "STATE", "SWITCH", "TIME", "TORQUE", "VX", "VY", "A", "X", "Y",
 ]  # fmt: skip
 

@@ -114,7 +114,7 @@ class Trains:
                 continue
             if name == "turn" or (name == "linear" and not numbers[OWN : OWN + 2].any()):
                 factors = [(i, -numbers[OWN + 2]), (j, numbers[OWN + 2])]
-            elif name == "gear" and numbers[WRAPS] == 0.0 and self._carries(entry):
+            elif name in ("gear", "turns") and numbers[WRAPS] == 0.0 and self._carries(entry):
                 first, second = float(numbers[OWN]), float(numbers[OWN + 1])
                 factors = [(i, first), (j, second), (int(entry[ARM]), -first - second)]
             else:

@@ -68,10 +68,15 @@ def take_phases(packed: Packed, q: np.ndarray, drive: np.ndarray, entries: Seque
         special[k, ACTIVE] = 1
         numbers[at + PHASE] = 0.0
         pose, phase = q, joint.params.get("phase")
+        together, total = joint.params.get("together"), joint.params.get("total")
+        if together is not None and arm is not None:
+            phase = [angle + q[3 * arm + 2] for angle in together]
         if phase is not None:
             given, pose = True, _turned_to(packed, q, (i, j), phase)
         residual_and_jacobian(system, pose, drive, packed.ws)
         numbers[at + PHASE] = packed.ws.equation[k, 0] - joint.params.get("slack", 0.0)
+        if total is not None:
+            given, numbers[at + PHASE] = True, total
     packed.system = system
     return given
 

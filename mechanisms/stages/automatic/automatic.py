@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Sequence
 from functools import cached_property
+from pathlib import Path
 
 import cadquery as cq
 
 from mbsd import Mechanism, Solution
+from mbsd.model.joints.ratios import helper_bodies
 from mechanisms.stages.automatic import assembly
 from mechanisms.stages.automatic.body_shapes import Joined
 from mechanisms.stages.automatic.decision import decided
@@ -28,6 +30,7 @@ from mechanisms.stages.automatic.layout.sizes import (
     sizes,
     thin_pins,
 )
+from mechanisms.stages.automatic.own_solids import OwnSolid, read_solid
 from mechanisms.stages.automatic.pins.pins import places
 from mechanisms.stages.automatic.rolling.roads import runs_on_ground
 from mechanisms.stages.automatic.shafts.along import THINNEST_ALONG, Along
@@ -86,8 +89,9 @@ class Automatic:
         self._materials: dict[str, str] = {}
         self._layers: dict[str, int] = {}
         self._replaced: dict[str, list[Solid]] = {}
+        self._own: dict[str, OwnSolid] = {}
         self._joined: list[Joined] = []
-        self._left_out: set[str] = set()
+        self._left_out: set[str] = helper_bodies(m)
         self._touching: set[tuple[str, str]] = set()
         self._marks: list[tuple[str, Mark]] = []
         self._base_under: list[Point] = []
@@ -120,6 +124,21 @@ class Automatic:
         if body in dict(self._marks):
             raise UserError(f"{self.m.name}: '{body}' is engraved; engrave its solids (shared/shapes/engraving.py)")
         self._replaced[body] = list(solids)
+
+    def solid(self, body: str, file: str | Path) -> None:
+        """Build the plate of ``body`` from a STEP file, in the frame of the body; others keep clear of its hull.
+
+        ``file``: beside mechanism.py, or a whole path. Its mass, centre and inertia count where mechanism.py gives
+        none. Raises UserError for a file without one closed solid, and when it is built, where its holes do not meet
+        the pins or it is thicker than its layer.
+        """
+        self._known(body)
+        self._refuse_along("solid", "give solids with made.replace(...)")
+        if body in self._replaced or body in dict(self._marks):
+            raise UserError(f"{self.m.name}: '{body}' is replaced or engraved; give it one solid")
+        own = self._own[body] = read_solid(self.m.name, body, file)
+        self._joined.append(Joined(body, own.outline, (0.0, 0.0), (), True))
+        self._plan_anew()
 
     def join(
         self, body: str, outline: cq.Wire, at: Point = (0.0, 0.0), holes: Sequence[cq.Wire] = (), sharp: bool = False
@@ -261,6 +280,8 @@ class Automatic:
             return self._solids_along(self.along)
         plan = self.plan()
         made = Bodies(assembly.fitted(assembly.built(plan, self.heights, engraved_too)) | self._replaced)
+        for body, own in self._own.items():
+            made[body][0] = own.in_place(self.m.name, plan, made[body][0], self.span(body))
         made.notes = self._notes()
         scale, plate = self.sizes.scale, assembly.back_plate(plan)
         poses = {body: pose * [scale, scale, 1.0] for body, pose in self.layout.poses.items()}

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 
 import mechanisms.stages.automatic.kinds  # noqa: F401  (enters them)
 from mbsd import Mechanism
+from mbsd.model.cables import seen_span
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
+from mbsd.model.joints.ratios import helper_bodies
 from mechanisms.stages.automatic.body_shapes import Joined
 from mechanisms.stages.automatic.layout.items import Anchor, Heights
 from mechanisms.stages.automatic.layout.layout import Feature, Layout
@@ -28,7 +30,7 @@ from shared.stage.paths import shown_file
 # The features of a mechanism: of its joints, forces, contacts and drivers by their kinds; eyes where a body is left
 # out.
 
-SHAPELESS = ("angle_lock", "constraint")
+SHAPELESS = ("angle_lock", "constraint", "turn_ratio", "travel_ratio")
 """Kinds of joints that hold by no part of their own."""
 
 
@@ -60,9 +62,11 @@ def gathered(layout: Layout) -> list[Feature]:
     m = layout.m
     by_kind: dict[str, list[Joint]] = {}
     loose: list[Joint] = []
+    helpers = helper_bodies(m)
     for name, joint in m.joints.items():
         kind = joint.kind.name
-        if kind in SHAPELESS:
+        joint = seen_span(m, joint) if "span" in joint.kind.constraints else joint
+        if kind in SHAPELESS or helpers.intersection(joint.bodies):
             continue
         if layout.apart.intersection(joint.bodies) or (kind == ROD and joint not in layout.rods.values()):
             loose.append(joint)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -29,10 +29,15 @@ POINTS = 240
 
 def shape_of(element: Joint | Force) -> Shape:
     """Return the shape between the two markers of a joint, force or contact."""
+    from mbsd.model.cables import seen_span
     from mbsd.model.force import Force as AnyForce
     from mbsd.model.force import ForceKind
+    from mbsd.model.joint import Joint as AnyJoint
+    from mbsd.model.mechanism import Model
     from mbsd.model.teeth import with_radii
 
+    if isinstance(element, AnyJoint) and "span" in element.kind.constraints:
+        element = seen_span(cast(Model, element.i.body.mechanism), element)
     params = dict(with_radii(element.params))
     profile, laws = params.get("profile"), getattr(element, "laws", {})
     outline: list[tuple[float, float]] = []
@@ -347,6 +352,7 @@ def _force(solution: Solution, view: ForceView) -> contract.ForceMotion:
         look=_look(force.kind.look, bool(view.potential.any())),
         shape=None if on_no_markers else shape_of(force),
         gas=_gas(force, view),
+        gas_behind=_chamber(force, view, "b"),
         hydraulics=_hydraulics(view),
     )
 
@@ -376,7 +382,7 @@ def _gas(force: Force, view: ForceView) -> contract.GasMotion | None:
     from mbsd.results.fluids import GasView
 
     if not isinstance(view, GasView):
-        return None
+        return _chamber(force, view, "a")
     return contract.GasMotion(
         pressure=view.pressure.tolist(),
         volume=view.volume.tolist(),
@@ -386,6 +392,19 @@ def _gas(force: Force, view: ForceView) -> contract.GasMotion | None:
         cycle_angle=view.cycle_angle,
         displaced=view.displaced,
         indicated_work=_list(view.indicated_work),
+    )
+
+
+def _chamber(force: Force, view: ForceView, side: str) -> contract.GasMotion | None:
+    """Return the gas in one chamber of a double-acting cylinder, else None."""
+    from mbsd.results.fluids import ValvedView
+
+    if not isinstance(view, ValvedView):
+        return None
+    return contract.GasMotion(
+        pressure=getattr(view, f"pressure_{side}").tolist(),
+        volume=getattr(view, f"volume_{side}").tolist(),
+        outside=force.params["exhaust"],
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -29,8 +30,8 @@ def gas(motion: Motion) -> Figure:
 
     It is that of each chamber's last cycle.
     """
-    known = [(name, force.gas) for name, force in motion.forces.items() if force.gas is not None]
-    inks = apart([acting_on(motion, name) for name, _ in known])
+    known = list(_chambers(motion))
+    inks = apart([acting_on(motion, name.removesuffix(BEHIND)) for name, _ in known])
     chambers = [(name, chamber, ink) for (name, chamber), ink in zip(known, inks, strict=True)]
     figure = page(motion.mechanism, "gas in the cylinders", _subtitle(chambers))
     indicated, over = figure.subplots(1, 2, width_ratios=(1.0, 1.15))
@@ -50,6 +51,18 @@ def gas(motion: Motion) -> Figure:
     indicated.set_ylim(bottom=min(0.0, indicated.get_ylim()[0]))
     _over_crank(over, motion, chambers)
     return figure
+
+
+BEHIND = " (rod side)"
+
+
+def _chambers(motion: Motion) -> Iterator[tuple[str, GasMotion]]:
+    """Yield all chambers; of a double-acting cylinder both."""
+    for name, force in motion.forces.items():
+        if force.gas is not None:
+            yield name, force.gas
+        if force.gas_behind is not None:
+            yield f"{name}{BEHIND}", force.gas_behind
 
 
 def _over_crank(axes: Axes, motion: Motion, chambers: list[tuple[str, GasMotion, str]]) -> None:

@@ -137,6 +137,16 @@ def test_a_slot_of_pmks_has_its_direction_and_carries_all_links_on_it(tmp_path: 
     assert sketch.joints[3] == Pin("C_pin", "rod", "arm", slot.place)
 
 
+def test_a_slider_and_a_floating_pin_of_pmks_are_driven(tmp_path: Path) -> None:
+    file = tmp_path / "a.txt"
+    lines = ["ground,crank,R,0,0", "crank,rod,R,30,40", "rod,block,R,-60,0", "block,ground,P,-60,0,0"]
+    for first, bodies in (3, ("ground", "block")), (1, ("crank", "rod")):  # the first joint is the input
+        file.write_text("\n".join([lines[first], *(line for line in lines if line != lines[first])]) + "\n")
+        m = built(file)[1]
+        assert m.drivers["motor"].bodies == bodies
+        assert np.isfinite(m.sweep(0.01, steps=5).driver("motor").effort).all()
+
+
 def test_freedoms_that_differ_from_the_files_are_said(tmp_path: Path) -> None:
     """Gears of PMKS are left out; the sliders of a Linkage file are lost where their limits are."""
     file = tmp_path / "a.txt"

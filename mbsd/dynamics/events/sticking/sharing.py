@@ -44,7 +44,7 @@ from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.reference.schur import factor_schur
 from mbsd.dynamics.reference.sliding import begin_sliding, slide
 from mbsd.equations.assembly import evaluate_gamma, evaluate_position
-from mbsd.equations.joint_friction import PIN, PRELOAD, SHAPE, SIZE, STATIC, apply_friction, normal_forces
+from mbsd.equations.joint_friction import PRELOAD, SHAPE, SIZE, STATIC, apply_friction, normal_forces, turns_about
 from mbsd.equations.laws import evaluate_laws
 from mbsd.equations.products import eliminate
 
@@ -194,7 +194,7 @@ def add_beside_lam(contacts, lam):
 def limit_of(dyn, k, normal):
     """Return the largest friction (N, N m) of joint k with friction, at rest under normal forces (f,)."""
     number = dyn.loads.friction_number[k]
-    lever = number[SIZE] if dyn.loads.friction[k, SHAPE] == PIN else 1.0
+    lever = number[SIZE] if turns_about(dyn.loads.friction[k, SHAPE]) else 1.0
     return number[STATIC] * lever * (normal[k] + number[PRELOAD])
 
 

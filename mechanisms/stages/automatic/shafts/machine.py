@@ -185,7 +185,7 @@ WHEELS = ("gear_pair", "belt")
 CAM = "cam_flat"
 JOINTS = ("revolute", "prismatic", *WHEELS, CAM)
 """Kinds of joints that have parts where bodies have places along the normal."""
-SHAPELESS = ("angle_lock", "constraint")
+SHAPELESS = ("angle_lock", "constraint", "turn_ratio", "travel_ratio")
 
 
 def machine(

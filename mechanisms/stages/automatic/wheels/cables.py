@@ -11,7 +11,7 @@ import numpy as np
 
 from mbsd import Mechanism, Solution
 from mbsd.model.body import Marker
-from mbsd.model.cables import signed_radii
+from mbsd.model.cables import seen_span, signed_radii
 from mbsd.model.joint import Joint
 from mechanisms.stages.automatic.layout.items import Heights, Item, Reach
 from mechanisms.stages.automatic.layout.layout import Feature, Layout
@@ -95,7 +95,9 @@ def extent_of(joint: Joint, solution: Solution) -> Extent:
 def cables(m: Mechanism, layout: Layout) -> list[Cable]:
     """Return all cables of a mechanism with their pulleys. Raises UserError for one that has none."""
     kinds = (SPANS, SLACK_SPANS)
-    spans = {span.name: span for span in (*m.joints.values(), *m.contacts.values()) if span.kind.name in kinds}
+    spans = {
+        span.name: seen_span(m, span) for span in (*m.joints.values(), *m.contacts.values()) if span.kind.name in kinds
+    }
     rows = rows_of_spans({name: _wheels(span) for name, span in spans.items()})
     return [_cable(m, [spans[name] for name in row], layout) for row in rows]
 

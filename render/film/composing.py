@@ -113,7 +113,7 @@ def outermost(points: Array) -> Array:
 
 EDGE = 0.046
 """Distance of what is written, from the picture's edges."""
-TITLE, NUMBER, RATE, LEGEND = 1 / 16, 1 / 23, 1 / 27, 1 / 25
+TITLE, NUMBER, RATE, LEGEND, NOTE = 1 / 16, 1 / 23, 1 / 27, 1 / 25, 1 / 30
 """Heights of letters."""
 LINE = 1.4
 """Distance from one line to the next, in heights of letters."""
@@ -155,6 +155,17 @@ def lines(title: str, numbers: Sequence[str], rate: str, aspect: float) -> list[
         out.append(LineSpec(words=words, x=EDGE, y=y, width=width, size=size, bold=bold, quiet=quiet))
         y += LINE * size
     return out
+
+
+def note(words: str, aspect: float, y: float) -> list[LineSpec]:
+    """Return the lines of a note on what the picture shows, from the height ``y`` down; none without words."""
+    if not words:
+        return []
+    size, broken = _broken(words, NOTE, sides(aspect)[0] - 2 * EDGE, bold=False)
+    return [
+        LineSpec(words=line, x=EDGE, y=y + LINE * size * k, width=size * width_of(line), size=size, quiet=True)
+        for k, line in enumerate(broken)
+    ]
 
 
 def box_of(lines: Sequence[LineSpec]) -> Box:
@@ -223,18 +234,18 @@ def _fitting(words: str, size: float, wide: float) -> float:
     return min(size, wide / width_of(words))
 
 
-def _broken(words: str, size: float, wide: float) -> tuple[float, list[str]]:
-    """Return the size and lines of a title.
+def _broken(words: str, size: float, wide: float, bold: bool = True) -> tuple[float, list[str]]:
+    """Return the size and lines of a title, or of words that are not ``bold``.
 
     It stands in one line, if need be smaller; else in two that are as alike as they can be.
     """
-    alone = min(size, wide / width_of(words, True))
+    alone = min(size, wide / width_of(words, bold))
     spaces = [k for k, letter in enumerate(words) if letter == " "]
     if alone >= SMALLER * size or not spaces:
         return alone, [words]
-    at = min(spaces, key=lambda k: max(width_of(words[:k], True), width_of(words[k + 1 :], True)))
+    at = min(spaces, key=lambda k: max(width_of(words[:k], bold), width_of(words[k + 1 :], bold)))
     both = [words[:at], words[at + 1 :]]
-    return min(size, *(wide / width_of(line, True) for line in both)), both
+    return min(size, *(wide / width_of(line, bold) for line in both)), both
 
 
 # Room for words: places of the picture in which nothing moves.

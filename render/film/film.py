@@ -304,10 +304,12 @@ class Film:
 
     @cached_property
     def _lines(self) -> list[LineSpec]:
-        """Return the lines of text at the upper left."""
+        """Return the lines of text at the upper left; parts that are shown and not built are noted below."""
         numbers = sorted({self.number(float(time)) for time in self._times} - {""})
         title, rate = arrows.title(self.motion, self.shot), arrows.rate(self.clock, self.shot)
-        return composing.lines(title, numbers, rate, self.aspect)
+        lines = composing.lines(title, numbers, rate, self.aspect)
+        lower = max((line.y + composing.LINE * line.size for line in lines), default=composing.EDGE)
+        return [*lines, *composing.note(self.parts.schematic, self.aspect, lower)]
 
     @cached_property
     def _words(self) -> Box:

@@ -141,6 +141,8 @@ PARTS_FOR_MOTION = Stage("mechanisms", "parts", also=("--if-needed=motion",))
 """Parts whose masses the motion needs, because mechanism.py does not give them."""
 SOLVE = Stage("mechanisms", "solve")
 CLEARANCE = Stage("mechanisms", "clearance", solids=True)
+CLEARANCE_OR_WARNING = Stage("mechanisms", "clearance", also=("--or-warn",), solids=True)
+"""The proof among pictures, which go on where parts are shown and cannot be built."""
 SHOT = Stage("mechanisms", "shot")
 PRINT = Stage("mechanisms", "print", ("bed", "gap"), solids=True)
 PARTS_FOR_MODEL = Stage("mechanisms", "parts", also=("--if-needed=model",))

@@ -300,13 +300,27 @@ def _wood(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
     )
 
 
+MILKY = 0.4
+"""Part of coloured glass that scatters light."""
+
+
 def _glass(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
-    """Return a pane: it tints what is behind and mirrors at a flat angle; light passes straight through."""
+    """Return a pane: it tints what is behind and mirrors at a flat angle; light passes straight through.
+
+    One of a strong colour is a little milky, so that it shows before what is dark.
+    """
     mirror = graph.add("BsdfGlossy", Color=(1.0, 1.0, 1.0), Roughness=0.06).outputs[0]
     clear = graph.add("BsdfTransparent", Color=surface.colour).outputs[0]
+    milky = MILKY * min(1.0, 2.0 * (max(surface.colour) - min(surface.colour)))
+    if milky > 0.2 * MILKY:
+        clear = _blended(graph, milky, clear, graph.add("BsdfDiffuse", Color=surface.colour).outputs[0])
+    return _blended(graph, graph.add("Fresnel", IOR=1.45).outputs[0], clear, mirror)
+
+
+def _blended(graph: Graph, part: Any, first: Any, second: Any) -> Any:
+    """Return a shader that is the second by a ``part``, else the first."""
     mix = graph.add("MixShader")
-    part = graph.add("Fresnel", IOR=1.45).outputs[0]
-    for index, value in enumerate((part, clear, mirror)):
+    for index, value in enumerate((part, first, second)):
         graph.set(mix, index, value)
     return mix.outputs[0]
 

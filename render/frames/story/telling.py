@@ -10,6 +10,7 @@ from functools import cached_property
 import msgspec
 import numpy as np
 
+from render.film import composing
 from render.film.camera import angles
 from render.film.film import Film
 from render.film.inputs import refuse_missing
@@ -40,6 +41,8 @@ from shared.stage.paths import Out
 # The pictures of a story: states of its film with and without arrows, kept by what they show as all frames are.
 
 Around = tuple[Picture, Picture, Picture]
+UNDER_RATE = 0.125
+"""Height at which notes on parts that cannot be built stand, below the rate (the picture's shorter side)."""
 
 
 @dataclass
@@ -52,11 +55,13 @@ class StoryPictures(Pictures):
 
     @cached_property
     def _scene(self) -> Scene:
-        return msgspec.structs.replace(self.film.scene, writing=Writing())
+        scene, film = self.film.scene, self.film
+        note = composing.note(film.parts.schematic, film.aspect, UNDER_RATE)
+        return msgspec.structs.replace(scene, writing=Writing(lines=note, on_bright=scene.writing.on_bright))
 
     @property
     def shown(self) -> Scene:
-        """The scene of the film, without what is written over it: stories have their own words."""
+        """The scene of the film with its note alone written over it: stories have their own words."""
         return self._scene
 
     @property

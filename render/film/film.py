@@ -267,7 +267,7 @@ class Film:
         """Return the subject of the film."""
         if self._way is None:
             machine = np.concatenate([self.space.machine, self._tubes])
-            return Subject(machine, self.space.around, self._drawn, machine)
+            return Subject(machine, self.space.around, self._drawn, machine, things=self.space.things)
         machine = np.concatenate([self._followed, self._tubes])
         return Subject(machine, np.zeros((0, 3)), self._drawn, machine, self._way)
 

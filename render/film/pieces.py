@@ -7,9 +7,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 import msgspec
+import numpy as np
 
 from render.film.scene import PieceSpec, SurfaceSpec
 from render.film.section import WHOLE, cuts_of
+from render.film.solids import Array, prism, read_corners
 from shared.contract import Motion, Parts, Piece
 from shared.contract.materials import MATERIALS
 from shared.contract.parts import Vector, Z
@@ -41,7 +43,7 @@ def piece_specs(parts: Parts, shot: Shot, folder: Path, motion: Motion | None = 
             name=name,
             stl=str((folder / piece.stl).resolve()),
             sha256=piece.stl_sha256,
-            surface=_surface(parts.mechanism, shot, body, name, piece),
+            surface=_surface(parts.mechanism, shot, body, name, piece, folder / piece.stl),
             turns_about=(piece.rolls.x, piece.rolls.y) if piece.rolls else None,
             cut=cuts.get((body, name), WHOLE).planes,
             fixed=cuts.get((body, name), WHOLE).fixed,
@@ -82,8 +84,25 @@ def _pieces(parts: Parts) -> Iterator[tuple[str, str, Piece]]:
     return ((body, name, piece) for body, solids in parts.bodies.items() for name, piece in solids.pieces.items())
 
 
-def _surface(mechanism: str, shot: Shot, body: str, name: str, piece: Piece) -> SurfaceSpec:
+ROUND, SIDES = 0.6, 20
+"""Part of its rim that makes a piece round, and the least number of its sides."""
+
+
+def is_round(outline: Array) -> bool:
+    """Return True if most of a convex outline (2 n, 2) is a circle about its middle: such metal is turned."""
+    rim = outline[: len(outline) // 2]
+    away = rim - (rim.min(axis=0) + rim.max(axis=0)) / 2
+    radius = np.hypot(*away.T)
+    on_it = radius > 0.985 * radius.max()
+    sides = np.linalg.norm(np.roll(rim, -1, axis=0) - rim, axis=1)
+    share = sides[on_it & np.roll(on_it, -1)].sum() / max(sides.sum(), 1e-12)
+    return len(rim) >= SIDES and bool(share >= ROUND)
+
+
+def _surface(mechanism: str, shot: Shot, body: str, name: str, piece: Piece, stl: Path) -> SurfaceSpec:
     chosen = _chosen(mechanism, shot, body, name, piece)
+    if chosen.finish == "brushed" and is_round(prism(read_corners(stl))[:, :2]):
+        chosen = msgspec.structs.replace(chosen, turned=True)
     if shot.transparent and {body, f"{body}/{name}"} & set(shot.transparent):
         chosen = as_pane(chosen)
     return neutral(chosen) if shot.show else chosen

@@ -30,6 +30,8 @@ class SurfaceSpec(msgspec.Struct, kw_only=True, frozen=True):
     colour: Colour
     finish: str
     roughness: float
+    turned: bool = False
+    """True if streaks of brushed metal go round the middle of the piece."""
 
 
 class PieceSpec(msgspec.Struct, kw_only=True, frozen=True):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 
 import cadquery as cq
 
@@ -29,6 +29,7 @@ from mechanisms.stages.automatic.layout.sizes import (
     sizes,
     thin_pins,
 )
+from mechanisms.stages.automatic.looks import looks_of
 from mechanisms.stages.automatic.pins.pins import places
 from mechanisms.stages.automatic.rolling.roads import runs_on_ground
 from mechanisms.stages.automatic.shafts.along import THINNEST_ALONG, Along
@@ -393,6 +394,11 @@ class Automatic:
 
     @cached_property
     def _decided(self) -> tuple[Layout, dict[str, int]]:
+        if looks_of(self.m):
+            try:
+                return decided(partial(self._layout, looks=True), self.wishes(), self._layers)
+            except NoOrder:  # there is no room for what bodies look like
+                pass
         return decided(self._layout, self.wishes(), self._layers)
 
     def wishes(self) -> list[Sizes]:
@@ -413,13 +419,19 @@ class Automatic:
         return [note] if note else []
 
     def _layout(
-        self, size: Sizes, springs: Springs, tubes: bool = False, tall: bool = False, pointers: bool = False
+        self,
+        size: Sizes,
+        springs: Springs,
+        tubes: bool = False,
+        tall: bool = False,
+        pointers: bool = False,
+        looks: bool = False,
     ) -> Layout:
         poses = poses_of(self.solution, size.of_metres(1.0))
         layout = Layout(self.m, size, poses, times_of(self.solution), springs)
         layout.apart = frozenset(self._left_out | self._glass)
         layout.touching = frozenset(map(frozenset, self._touching))
-        return laid_out(layout, self._joined, tubes, tall, pointers)
+        return laid_out(layout, self._joined, tubes, tall, pointers, looks)
 
     def _plan_anew(self) -> None:
         """Forget what was found before a wish."""

@@ -212,9 +212,14 @@ def _anodised(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
 
 
 def _brushed(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
-    """Return metal brushed lengthwise: fine streaks in roughness and tone along x of the body."""
-    streaks = _noise(graph, _place(graph, (14.0, 900.0, 40.0), grain), 3.0, 0.6)
-    tangent = graph.add("Tangent", {"direction_type": "RADIAL", "axis": "Y"}).outputs[0]
+    """Return metal brushed lengthwise: fine streaks in roughness and tone along x of the body.
+
+    Those of a turned piece go round its axis.
+    """
+    place = _radius(graph) if surface.turned else _place(graph, (14.0, 900.0, 40.0), grain)
+    streaks = _noise(graph, place, 3.0, 0.6)
+    axis = "Z" if surface.turned else "Y"
+    tangent = graph.add("Tangent", {"direction_type": "RADIAL", "axis": axis}).outputs[0]
     return _principled(
         graph,
         Base_Color=_toned(graph, surface.colour, _swing(graph, streaks, 0.68, 0.20)),
@@ -223,6 +228,18 @@ def _brushed(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
         Anisotropic=0.6,
         Tangent=tangent,
     )
+
+
+TURNS = 260.0
+"""Streaks of a turned piece, from its middle to its rim."""
+
+
+def _radius(graph: Graph) -> Any:
+    """Return a place that depends on the distance from the middle of a piece alone, 0 to TURNS at its rim."""
+    place = graph.add("SeparateXYZ", Vector=graph.add("TexCoord").outputs["Generated"]).outputs
+    square = [graph.math("POWER", graph.math("SUBTRACT", place[axis], 0.5), 2.0) for axis in "XY"]
+    away = graph.math("SQRT", graph.math("ADD", *square))
+    return graph.add("CombineXYZ", X=graph.math("MULTIPLY", away, 2.0 * TURNS)).outputs[0]
 
 
 def _polished(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:

@@ -249,7 +249,7 @@ def _drawing(out: Out, preset: Preset, film: Film, story: Story, known: list[str
     words = out.name.replace("_", " ").replace("-", ": ")
     said = tuple(re.split(r"(?<=[.!?])\s+(?=[A-Z0-9])", " ".join(description(out.name).split("\n\n")[0].split())))
     said = tuple(sentence for sentence in said if sentence != "SI units.")
-    line = plain(BETWEEN.join(without_slow(fact) for fact in known[1 : 1 + FACTS]))
+    line = plain(BETWEEN.join(without_slow(fact) for fact in known[1 : 1 + FACTS])).replace("N m", "N·m")
     return Drawing(
         wide=preset.width, high=preset.height, name=words[:1].upper() + words[1:], said=said,
         facts=line[:1].upper() + line[1:], strip=strip_of(film, story, preset),

@@ -52,7 +52,8 @@ def notes(scenery: Scenery, picture: Picture) -> tuple[Note, ...]:
             continue
         way = (tip - tail) / max(float(np.hypot(*(tip - tail))), 1e-9)
         vector = film.arrows.vectors[k]
-        words = f"{plain(vector.name.partition(' of ')[2] or vector.name)}  {in_words(sizes[k], vector.unit)}"
+        name = "weight" if vector.weight else vector.name.partition(" on ")[0].partition(" of ")[2] or vector.name
+        words = f"{plain(name.partition(' on ')[0])}  {in_words(sizes[k], vector.unit)}"
         colour = SIGNALS[vector.row].dark
         out.append(Note(float(tip[0] / wide), float(tip[1] / high), float(way[0]), float(way[1]), words, colour))
     return tuple(out)

@@ -79,9 +79,7 @@ def _parser() -> argparse.ArgumentParser:
         sub = commands.add_parser(command, help=text)
         sub.add_argument("name", help="mechanism; four-bar and four_bar are one")
         if command == "animate":
-            sub.add_argument(
-                "--view", default="", help="such as reactions,velocities; all: all side by side"
-            )
+            sub.add_argument("--view", default="", help="such as reactions,velocities; all: all side by side")
         if command == "print":
             sub.add_argument("--bed", default="", help="size of a plate in mm, 220x220 if not given")
             sub.add_argument("--gap", default="", help="distance between pieces in mm, 5 if not given")

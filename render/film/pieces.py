@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -88,21 +89,35 @@ ROUND, SIDES = 0.6, 20
 """Part of its rim that makes a piece round, and the least number of its sides."""
 
 
-def is_round(outline: Array) -> bool:
-    """Return True if most of a convex outline (2 n, 2) is a circle about its middle: such metal is turned."""
+def axis_of(outline: Array) -> tuple[float, float] | None:
+    """Return the middle of the circle that most of a convex outline (2 n, 2) is on: such metal is turned.
+
+    None of an outline that is no circle. The circle is that of least squares, once more without what is off it.
+    """
     rim = outline[: len(outline) // 2]
-    away = rim - (rim.min(axis=0) + rim.max(axis=0)) / 2
-    radius = np.hypot(*away.T)
-    on_it = radius > 0.985 * radius.max()
+    if len(rim) < SIDES:
+        return None
+    on_it, centre, radius = np.full(len(rim), True), np.zeros(2), 0.0
+    for _ in range(2):
+        rows = np.column_stack([rim[on_it], np.ones(int(on_it.sum()))])
+        u, v, w = np.linalg.lstsq(rows, (rim[on_it] ** 2).sum(axis=1), rcond=None)[0]
+        centre = np.array([u, v]) / 2
+        radius = math.sqrt(max(float(w + centre @ centre), 0.0))
+        off = np.abs(np.hypot(*(rim - centre).T) - radius)
+        on_it = off < 0.01 * radius
+        if on_it.sum() < SIDES:
+            return None
     sides = np.linalg.norm(np.roll(rim, -1, axis=0) - rim, axis=1)
-    share = sides[on_it & np.roll(on_it, -1)].sum() / max(sides.sum(), 1e-12)
-    return len(rim) >= SIDES and bool(share >= ROUND)
+    between = (rim + np.roll(rim, -1, axis=0)) / 2 - centre
+    arc = on_it & np.roll(on_it, -1) & (np.hypot(*between.T) > 0.97 * radius)  # a chord has its ends on the circle
+    share = float(sides[arc].sum() / max(sides.sum(), 1e-12))
+    return (round(float(centre[0]), 6), round(float(centre[1]), 6)) if share >= ROUND else None
 
 
 def _surface(mechanism: str, shot: Shot, body: str, name: str, piece: Piece, stl: Path) -> SurfaceSpec:
     chosen = _chosen(mechanism, shot, body, name, piece)
-    if chosen.finish == "brushed" and is_round(prism(read_corners(stl))[:, :2]):
-        chosen = msgspec.structs.replace(chosen, turned=True)
+    if chosen.finish == "brushed":
+        chosen = msgspec.structs.replace(chosen, turned=axis_of(prism(read_corners(stl))[:, :2]))
     if shot.transparent and {body, f"{body}/{name}"} & set(shot.transparent):
         chosen = as_pane(chosen)
     return neutral(chosen) if shot.show else chosen

@@ -216,10 +216,10 @@ def _brushed(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
 
     Those of a turned piece go round its axis.
     """
-    place = _radius(graph) if surface.turned else _place(graph, (14.0, 900.0, 40.0), grain)
+    axis = surface.turned
+    place = _place(graph, (14.0, 900.0, 40.0), grain) if axis is None else _radius(graph, axis, grain)
     streaks = _noise(graph, place, 3.0, 0.6)
-    axis = "Z" if surface.turned else "Y"
-    tangent = graph.add("Tangent", {"direction_type": "RADIAL", "axis": axis}).outputs[0]
+    tangent = graph.add("Tangent", {"direction_type": "RADIAL", "axis": "Y" if axis is None else "Z"}).outputs[0]
     return _principled(
         graph,
         Base_Color=_toned(graph, surface.colour, _swing(graph, streaks, 0.68, 0.20)),
@@ -230,16 +230,15 @@ def _brushed(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
     )
 
 
-TURNS = 260.0
-"""Streaks of a turned piece, from its middle to its rim."""
-
-
-def _radius(graph: Graph) -> Any:
-    """Return a place that depends on the distance from the middle of a piece alone, 0 to TURNS at its rim."""
-    place = graph.add("SeparateXYZ", Vector=graph.add("TexCoord").outputs["Generated"]).outputs
-    square = [graph.math("POWER", graph.math("SUBTRACT", place[axis], 0.5), 2.0) for axis in "XY"]
+def _radius(graph: Graph, axis: tuple[float, float], grain: float) -> Any:
+    """Return a place that depends on the distance from an axis of the body alone."""
+    place = graph.add("SeparateXYZ", Vector=graph.add("TexCoord").outputs["Object"]).outputs
+    square = [
+        graph.math("POWER", graph.math("SUBTRACT", place[name], value), 2.0)
+        for name, value in zip("XY", axis, strict=True)
+    ]
     away = graph.math("SQRT", graph.math("ADD", *square))
-    return graph.add("CombineXYZ", X=graph.math("MULTIPLY", away, 2.0 * TURNS)).outputs[0]
+    return graph.add("CombineXYZ", X=graph.math("MULTIPLY", away, 900.0 / grain)).outputs[0]
 
 
 def _polished(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:

@@ -13,7 +13,7 @@ import pytest
 from mbsd import Mechanism, ModelError, constant_rate
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.looks import WORDS, looks_of
-from render.film.pieces import is_round
+from render.film.pieces import axis_of
 from render.film.solids import prism
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic import proofs
@@ -114,9 +114,13 @@ def test_a_look_changes_the_mass() -> None:
     assert masses[1] > 1.1 * masses[0]
 
 
-def test_discs_are_round_and_bars_are_not() -> None:
-    turn = np.linspace(0, 2 * np.pi, 64, endpoint=False)
+def test_discs_are_turned_about_their_axis_and_bars_are_brushed() -> None:
+    turn = np.linspace(0, 2 * np.pi, 90, endpoint=False)
     disc = np.column_stack([np.cos(turn), np.sin(turn), 0 * turn])
+    cut = disc[disc[:, 0] < 0.6]  # the hull of a locking disc has a chord
     bar = np.concatenate([disc * [0.2, 0.2, 1] + [x, 0, 0] for x in (-1, 1)])
     square = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (0, 1)], float)
-    assert [is_round(prism(points)[:, :2]) for points in (disc, bar, square)] == [True, False, False]
+    for points in (disc, cut):
+        assert axis_of(prism(points + np.array([0.3, -2.0, 0.0]))[:, :2]) == pytest.approx((0.3, -2.0), abs=1e-5)
+    for points in (bar, square):
+        assert axis_of(prism(points)[:, :2]) is None

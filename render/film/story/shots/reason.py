@@ -88,7 +88,8 @@ def reason(scenery: Scenery) -> Shot | None:
     after = Ramp(ramp.time_at(stop), ((on, 0.0, clock.rate),))
     seconds = begins + on
     wide, near = _stands(scenery, ramp.time_at(stop))
-    beyond = turned(near, ROUND, 0.0, 1.0) if scenery.turning else near
+    round_it = turned(near, ROUND, 0.0, 1.0)
+    beyond = round_it if scenery.turning and _holds_arrows(scenery, round_it, ramp.time_at(stop)) else near
 
     def model(s: float) -> float:
         return ramp.time_at(s) if s < begins else after.time_at(s - begins)

@@ -32,6 +32,8 @@ def main() -> int | None:
             return stage.run_if_needed(name, arguments.if_needed)
         if getattr(arguments, "or_none", False):
             return stage.run_or_none(name)
+        if getattr(arguments, "or_warn", False):
+            return stage.run_or_warn(name)
         if arguments.command == "parts":
             return stage.run(name, scale=arguments.scale, anyway=arguments.anyway not in ("", "0"))
         if arguments.command == "solve":
@@ -77,7 +79,7 @@ def _parser() -> argparse.ArgumentParser:
         sub = commands.add_parser(command, help=text)
         sub.add_argument("name", help="mechanism; four-bar and four_bar are one")
         if command == "animate":
-            sub.add_argument("--view", default="", help="quantities, such as reactions,velocities; all if not given")
+            sub.add_argument("--view", default="", help="such as reactions,velocities; all: all side by side")
         if command == "print":
             sub.add_argument("--bed", default="", help="size of a plate in mm, 220x220 if not given")
             sub.add_argument("--gap", default="", help="distance between pieces in mm, 5 if not given")
@@ -87,6 +89,8 @@ def _parser() -> argparse.ArgumentParser:
             sub.add_argument("--anyway", default="", help="1: also where the same was refused before")
             sub.add_argument("--or-none", action="store_true", help="go on where there are no automatic parts")
             sub.add_argument("--if-needed", choices=("motion", "model", "proof"), help="only if this needs them")
+        if command == "clearance":
+            sub.add_argument("--or-warn", action="store_true", help="go on where parts are shown and cannot be built")
     fresh = commands.add_parser("new", help="a new mechanism that already runs")
     fresh.add_argument("name", help="folder to make")
     fresh.add_argument("--kind", default="driven", help="driven or simulated")

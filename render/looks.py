@@ -344,8 +344,9 @@ LOOKS: dict[str, Look] = {look.name: look for look in (STUDIO, CYCLORAMA, BENCH,
 
 # The look of a machine whose shot.py names none, by what its files say of it.
 
-LARGE = 0.8
-"""Size (m) from which a machine is too large for a bench."""
+SMALL, LARGE, HUGE = 0.3, 0.8, 3.0
+"""Sizes (m): what is smaller stands on a bench, even if it rolls; what is larger is too large for one; what is larger
+still stands outdoors."""
 
 
 @dataclass(frozen=True)
@@ -368,12 +369,15 @@ def chosen(family: Family) -> str:
     """Return the look that suits a family.
 
     Vehicles are on a road, engines in the dark studio, what is left to itself before white; what is driven stands on a
-    bench, or in daylight where it is too large for one or hangs at a wall, and in the studio where it lies.
+    bench, or in daylight where it is too large for one or hangs at a wall, and in the studio where it lies. What rolls
+    and is small enough is on a bench, too; what is huge is outdoors.
     """
     if family.mount == "ground":
-        return "road"
+        return "bench" if family.size < SMALL else "road"
     if family.engine:
         return "studio"
+    if family.size > HUGE and family.mount == "stand":
+        return "road"
     if not family.driven:
         return "cyclorama"
     if family.mount == "wall" or family.size > LARGE:

@@ -100,6 +100,8 @@ class Body(Suggesting):
     """
     z: float | None = None
     """Place of its centre of mass along the normal of the plane (m); None: not given, and 0 where it counts."""
+    looks: str = ""
+    """What its automatic parts look like, such as "piston"; empty: what its name says. No equation knows it."""
     products: tuple[float, float] = (0.0, 0.0)
     """Products of inertia, integrals of x z dm and y z dm about the centre of mass in the body frame (kg m^2). They are
     those of a body that reaches along the normal, such as a crankshaft; 0 of one that is alike on both sides of z."""
@@ -122,6 +124,10 @@ class Body(Suggesting):
             return number_pair(f"{what} (m)", value)
         if name == "products":
             return number_pair(f"{self.owner}: products of inertia of body '{self.name}' (kg m^2)", value)
+        if name == "looks" and not isinstance(value, str):
+            raise ModelError(
+                f"{self.owner}: looks of body '{self.name}' is {shown(value)}; write a word: looks='piston'"
+            )
         if name == "z" and value is not None:
             return finite_number(f"{self.owner}: z of body '{self.name}' (m)", value)
         if name in ("mass", "inertia"):
@@ -171,7 +177,7 @@ class Body(Suggesting):
 
     def copy_properties(self, other: Body) -> None:
         """Have the mass properties and the length of another body, given and derived ones, from now on."""
-        for key in ("mass", "com", "inertia", "length", "mass_given", "derived", "z", "products"):
+        for key in ("mass", "com", "inertia", "length", "mass_given", "derived", "z", "products", "looks"):
             self.__dict__[key] = getattr(other, key)
 
     def belong(self, mechanism: Owner) -> None:

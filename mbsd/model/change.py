@@ -161,7 +161,7 @@ def given_body(body: Body) -> dict[str, Any]:
     """Arguments of the method that added it: what the user gave."""
     mass = body.mass if body.mass_given or body.mass > 0 else None
     out = {"mass": mass} | {key: getattr(body, key) for key in ("com", "inertia") if key not in body.derived}
-    out |= {"z": body.z, "products": body.products}
+    out |= {"z": body.z, "products": body.products, "looks": body.looks}
     return out if body.length is None else {"length": body.length} | out
 
 

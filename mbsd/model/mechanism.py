@@ -114,6 +114,7 @@ class Model(Suggesting):
         *,
         z: float | None = None,
         products: Sequence[float] = (0.0, 0.0),
+        looks: str = "",
     ) -> Body:
         """Add a body. Without a mass it has none here; in a mechanism's folder it then gets that of its parts.
 
@@ -124,10 +125,11 @@ class Model(Suggesting):
 
         ``z``: place of its centre of mass along the normal of the plane, towards the viewer (m). It moves nothing; the
         couples of ``sol.shaking()`` and the layers of the parts follow it. ``products``: integrals of x z dm and y z dm
-        about the centre of mass, in the body frame (kg m^2), of a body that reaches along the normal. Raises ModelError
+        about the centre of mass, in the body frame (kg m^2), of a body that reaches along the normal. ``looks``: what
+        its automatic parts look like, such as "piston" or "flywheel"; by default what its name says. Raises ModelError
         on a name already used or an impossible mass.
         """
-        return self._with(name, new_body, mass, com, inertia, z=z, products=products)
+        return self._with(name, new_body, mass, com, inertia, z=z, products=products, looks=looks)
 
     def bar(
         self,
@@ -139,14 +141,15 @@ class Model(Suggesting):
         *,
         z: float | None = None,
         products: Sequence[float] = (0.0, 0.0),
+        looks: str = "",
     ) -> Body:
         """Add a bar from ``start`` (0, 0) to ``end`` (length, 0).
 
         With a mass and nothing else it is a uniform slender rod: com at the middle, inertia m l^2 / 12, also after its
-        mass or length changes; ``inertia=0`` makes it a point mass at ``com``. ``z`` and ``products`` are those of
-        :meth:`body`.
+        mass or length changes; ``inertia=0`` makes it a point mass at ``com``. ``z``, ``products`` and
+        ``looks`` are those of :meth:`body`.
         """
-        return self._with(name, new_bar, length, mass, com, inertia, z=z, products=products)
+        return self._with(name, new_bar, length, mass, com, inertia, z=z, products=products, looks=looks)
 
     def _with(self, name: str, make: Callable[..., Body], *given: Any, **named: Any) -> Body:
         """A body that is made, once its name is known to be new."""
@@ -189,11 +192,11 @@ class Model(Suggesting):
 
 def new_body(
     m: Model, name: str, mass: float | None = None, com: Sequence[float] = (0.0, 0.0), inertia: float = 0.0, *,
-    z: float | None = None, products: Sequence[float] = (0.0, 0.0),
+    z: float | None = None, products: Sequence[float] = (0.0, 0.0), looks: str = "",
 ) -> Body:  # fmt: skip
     """A body as :meth:`Model.body` adds it, which belongs to no mechanism yet; ``m`` is named in errors."""
     checked: Any = com, products  # a body turns any two numbers into a pair
-    body = Body(name, m.name, 0.0 if mass is None else mass, checked[0], inertia, z=z, products=checked[1])
+    body = Body(name, m.name, 0.0 if mass is None else mass, checked[0], inertia, z=z, products=checked[1], looks=looks)
     body.mass_given = mass is not None
     return body
 
@@ -201,6 +204,7 @@ def new_body(
 def new_bar(
     m: Model, name: str, length: float, mass: float | None = None, com: Sequence[float] | None = None,
     inertia: float | None = None, *, z: float | None = None, products: Sequence[float] = (0.0, 0.0),
+    looks: str = "",
 ) -> Body:  # fmt: skip
     """A bar as :meth:`Model.bar` adds it, likewise."""
     length = length_given(m, f"bar '{name}' has length", length)
@@ -208,7 +212,7 @@ def new_bar(
     com = (length / 2, 0.0) if com is None else com
     mass = None if mass is None else number_given(m, f"mass of body '{name}'", mass)
     inertia = rod_inertia(mass or 0.0, length) if inertia is None else inertia
-    body = new_body(m, name, mass, com, inertia, z=z, products=products)
+    body = new_body(m, name, mass, com, inertia, z=z, products=products, looks=looks)
     body.length, body.derived = length, derived
     return body
 

@@ -1,7 +1,7 @@
 """A mechanism as a document of plain data (SI, radians), and back.
 
     {"schema": "mbsd.model", "schema_version": 1, "name": ..., "gravity": [gx, gy],
-     "bodies": {"crank": {"mass", "com", "inertia", "length", "z", "products"}},
+     "bodies": {"crank": {"mass", "com", "inertia", "length", "z", "products", "looks"}},
      "joints": {"A": {"kind", "i": {"body", "x", "y", "angle", "z"}, "j": ..., "params"}},
      "contacts": the same, "drivers": the same with "law", "forces": the same with "laws", "traces": {"P": marker},
      "starts": {"crank": {"angle", "place"}}, "velocities": {"crank": {"omega", "place"}}}
@@ -175,6 +175,8 @@ def _body(body: Body) -> dict[str, Any]:
         out["z"] = body.z
     if any(body.products):
         out["products"] = list(body.products)
+    if body.looks:
+        out["looks"] = body.looks
     return out
 
 
@@ -218,13 +220,15 @@ def _read_body(m: Model, name: str, entry: Entry) -> None:
     com = None if bar and entry.is_null("com") else entry.numbers("com", 2)
     z = None if entry.get("z") is None else entry.number("z")
     products = (0.0, 0.0) if entry.get("products") is None else entry.numbers("products", 2)
-    entry.check_fields("mass", "com", "inertia", "length", "z", "products")
+    looks = "" if entry.get("looks") is None else entry.text("looks")
+    entry.check_fields("mass", "com", "inertia", "length", "z", "products", "looks")
     if bar:
-        entry.within(lambda: m.bar(name, entry.number("length"), mass, com, inertia, z=z, products=products))
+        length = entry.number("length")
+        entry.within(lambda: m.bar(name, length, mass, com, inertia, z=z, products=products, looks=looks))
     else:
         assert com is not None
         assert inertia is not None
-        entry.within(lambda: m.body(name, mass, com, inertia, z=z, products=products))
+        entry.within(lambda: m.body(name, mass, com, inertia, z=z, products=products, looks=looks))
 
 
 def _read_marker(m: Model, entry: Entry) -> Marker:

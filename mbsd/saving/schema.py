@@ -46,7 +46,7 @@ def schema() -> dict[str, Any]:
             "inertia": {"type": ["number", "null"], "minimum": 0},
             "length": {"type": ["number", "null"], "exclusiveMinimum": 0},
         },
-        along | {"products": ({"anyOf": [PAIR, {"type": "null"}]}, False)},
+        along | {"products": ({"anyOf": [PAIR, {"type": "null"}]}, False), "looks": ({"type": "string"}, False)},
     )
     start, velocity = (
         _object({key: NUMBER, "place": {"anyOf": [PAIR, {"type": "null"}]}}) for key in ("angle", "omega")

@@ -23,7 +23,10 @@ if TYPE_CHECKING:
 
 
 QUANTITIES = ("velocities", "accelerations", "forces", "reactions", "energy")
-VIEWS = (*QUANTITIES, "skeleton", "each")
+USUAL = "reactions"
+"""Quantity of a film without a view."""
+VIEWS = (*QUANTITIES, "skeleton", "each", "all")
+"""Quantities; the mechanism alone; a film of each quantity; all of them side by side in one."""
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite", "matplotlib", "pillow", "imageio-ffmpeg")
 SUFFIXES = (".mp4", ".gif")
 _STAGE = ("animate", "loading/loading", *(f"solve/{name}" for name in ("solving", "masses", "skeleton_file")))
@@ -48,7 +51,7 @@ def run(name: str, view: str = "") -> None:
 
 
 def films_of(view: str) -> list[str]:
-    """Return the views of the films to make: ``""`` is all quantities side by side.
+    """Return the views of the films to make: ``""`` is one large mechanism with its reactions.
 
     Raises UserError for unknown words.
     """
@@ -57,11 +60,11 @@ def films_of(view: str) -> list[str]:
         if word not in VIEWS:
             raise UserError(
                 f"VIEW={view!r}: there is no view {word!r}; there is: {', '.join(VIEWS)}; commas join several, and "
-                f"without VIEW all are side by side{did_you_mean(word, VIEWS)}"
+                f"without VIEW one mechanism has its {USUAL}{did_you_mean(word, VIEWS)}"
             )
-    if "each" in words or "skeleton" in words:
+    if {"each", "skeleton", "all"} & {*words}:
         if len(words) > 1:
-            raise UserError(f"VIEW={view!r}: 'each' and 'skeleton' stand alone")
+            raise UserError(f"VIEW={view!r}: 'each', 'skeleton' and 'all' stand alone")
         return list(QUANTITIES) if words == ["each"] else words
     return [",".join(word for word in QUANTITIES if word in words)]
 
@@ -103,7 +106,7 @@ def _draw(solution: Solution, path: Path, words: str, parts: Parts | None) -> No
     from mbsd.drawing.animation.animate import animate
 
     name = solution.mechanism.name
-    show = "all" if not words else () if words == "skeleton" else tuple(words.split(","))
+    show = "all" if words == "all" else () if words == "skeleton" else tuple((words or USUAL).split(","))
     with ExitStack() as stack:
         bar: console.Progress | None = None
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import cached_property
 
 import msgspec
@@ -46,14 +47,23 @@ def angles(shot: Camera, mount: Mount, aspect: float = ASPECT) -> tuple[float, f
 class Subject:
     """The subject of a film, in points (n, 3) of the world (m)."""
 
-    def __init__(self, machine: Array, around: Array, drawn: Array, sharp: Array, way: Array | None = None) -> None:
+    def __init__(
+        self,
+        machine: Array,
+        around: Array,
+        drawn: Array,
+        sharp: Array,
+        way: Array | None = None,
+        things: Sequence[Array] = (),
+    ) -> None:
         """Keep the points of all of the ``machine``, and of what is ``around`` it, ``drawn`` and ``sharp``.
 
-        They hold over the whole motion. Where the machine is followed, ``way`` (frames, 3) is where it is, and points
-        are as seen from there.
+        ``things`` are large pieces among what is around, which a picture has whole or cuts on purpose. They hold over
+        the whole motion. Where the machine is followed, ``way`` (frames, 3) is where it is, and points are as seen from
+        there.
         """
         self.machine, self.around, self.drawn, self.sharp, self.way = machine, around, drawn, sharp, way
-        self.few = outermost(machine)
+        self.few, self.things = outermost(machine), tuple(things)
 
 
 class FilmCamera:
@@ -78,6 +88,7 @@ class FilmCamera:
             in_studio(points, self.up) for points in (subject.machine, subject.around, subject.drawn, subject.sharp)
         )
         self.few = in_studio(subject.few, self.up)
+        self.things = [in_studio(thing, self.up) for thing in subject.things]
         self.way = None if subject.way is None else in_studio(subject.way, self.up)
 
     def pose(self, frame: int) -> CameraPose:
@@ -151,7 +162,7 @@ class FilmCamera:
         """Camera position, the point it looks at, and their distance, in the axes of the studio."""
         empty = (0.0, 0.0) if self.shot.orbit else self.empty
         view = View(self.azimuth, self.elevation, self.shot.lens, self.shot.margin, empty, self.aspect)
-        filmed = held(view, self.machine, self.around, self.drawn, self.few)
+        filmed = held(view, self.machine, self.around, self.drawn, self.few, self.things)
         position, distance = view.stand(filmed)
         target = position + axes(self.azimuth, self.elevation)[2] * distance
         if self.shot.orbit:

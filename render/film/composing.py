@@ -56,12 +56,29 @@ class View:
         return across, up
 
 
-def held(view: View, machine: Array, around: Array, drawn: Array, few: Array | None = None) -> Array:
+KEPT = 0.75
+"""Part of what the machine may fill that it fills at least, in a picture that is wider for what stands around."""
+NEAR_MISS, AIR = 0.17, 0.98
+"""What is cut is cut by so much of its area at least: a sliver looks like a mistake. What is whole has some air."""
+TRIES = 16
+"""Parts of what stands around that are tried."""
+
+
+def held(
+    view: View,
+    machine: Array,
+    around: Array,
+    drawn: Array,
+    few: Array | None = None,
+    things: Sequence[Array] = (),
+) -> Array:
     """Return points (n, 3) that a picture holds.
 
     These are all of the ``machine`` (m, 3), arrows that are ``drawn`` (k, 3) about it, and what stands ``around`` (l,
-    3) as far as the machine then fills :data:`FILLED`; beyond that, it may leave the frame. ``few`` are the
-    :func:`outermost` of the machine, where they are known.
+    3) as far as the machine then fills :data:`FILLED`; beyond that, it may leave the frame. Where one of the ``things``
+    (i, 3) among it would be cut by a sliver, the picture is wider, as long as the machine fills :data:`KEPT` of that;
+    else it is closer, so that the thing is cut on purpose. ``few`` are the :func:`outermost` of the machine, where they
+    are known.
     """
     middle = (machine.min(axis=0) + machine.max(axis=0)) / 2
     drawn = middle + DRAWN * (drawn - middle)
@@ -72,19 +89,80 @@ def held(view: View, machine: Array, around: Array, drawn: Array, few: Array | N
     most, room = min(AIM, 0.99 * (1 - 2 * view.margin)), 1 - 2 * view.margin
     left = 1 - sum(min(part / room, 1 / 3) for part in view.empty)  # of the height, by what is written
 
-    def suffices(part: float) -> bool:
-        position, _ = view.stand(np.concatenate([few, arrows, middle + part * (rest - middle)]))
-        across, up = view.filled(few, position)
-        return max(across / (1 - view.aside), up / left) >= most
+    def stood(part: float) -> Array:
+        return view.stand(np.concatenate([few, arrows, middle + part * (rest - middle)]))[0]
+
+    def fills(part: float) -> float:
+        across, up = view.filled(few, stood(part))
+        return max(across / (1 - view.aside), up / left)
 
     low, high = 0.0, 1.0
-    if suffices(high):
+    if fills(high) >= most:
         low = high
     else:
         for _ in range(STEPS):
             half = (low + high) / 2
-            low, high = (half, high) if suffices(half) else (low, half)
+            low, high = (half, high) if fills(half) >= most else (low, half)
+        wider = [part for part in np.linspace(low, 1.0, TRIES) if part == low or fills(part) >= KEPT * most]
+        parts = [*wider, *np.linspace(low, 0.0, TRIES)[1:]]
+        cuts = [max((near_miss(view, stood(part), thing) for thing in things), default=0.0) for part in parts]
+        low = float(parts[int(np.argmin(np.round(cuts, 3)))])
     return np.concatenate([machine, drawn, middle + low * (around - middle)])
+
+
+def near_miss(view: View, position: Array, thing: Array) -> float:
+    """Return how near a cut of a thing (n, 3) is to none, or to one by :data:`NEAR_MISS`; 0 where it is neither."""
+    share = cut_share(view, position, thing, AIR)
+    return min(share, NEAR_MISS - share) if WHOLE < share < NEAR_MISS else 0.0
+
+
+WHOLE = 1e-3
+"""A thing of which less is cut is whole."""
+
+
+def cut_share(view: View, position: Array, thing: Array, edge: float = 1.0) -> float:
+    """Return the part of the area of a convex thing (n, 3) that is out of the picture from ``position`` (3,).
+
+    ``edge``: part of the picture that counts as its inside.
+    """
+    u, v, w = ((thing - position) @ axes(view.azimuth, view.elevation).T).T
+    half = half_field(view.lens, view.aspect)
+    seen = np.stack([u / np.maximum(w, 1e-9) / half[0], v / np.maximum(w, 1e-9) / half[1]], axis=1) / edge
+    corners = _hull(seen)
+    whole, inside = area(corners), corners
+    for axis in (0, 1):
+        for side in (-1.0, 1.0):
+            inside = _clipped(inside, axis, side)
+    return 1.0 - area(inside) / whole if whole > 0 else 0.0
+
+
+def area(corners: Array) -> float:
+    """Return the area of a polygon (n, 2)."""
+    if len(corners) < 3:
+        return 0.0
+    ahead = np.roll(corners, -1, axis=0)
+    return float(abs((corners[:, 0] * ahead[:, 1] - corners[:, 1] * ahead[:, 0]).sum())) / 2
+
+
+def _hull(points: Array) -> Array:
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        return points[ConvexHull(points).vertices]
+    except QhullError:
+        return points[:0]
+
+
+def _clipped(corners: Array, axis: int, side: float) -> Array:
+    """Return a convex polygon (n, 2) cut off where ``side`` times a coordinate is above 1."""
+    out: list[Array] = []
+    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        da, db = 1.0 - side * a[axis], 1.0 - side * b[axis]
+        if da >= 0:
+            out.append(a)
+        if (da < 0) != (db < 0):
+            out.append(a + da / (da - db) * (b - a))
+    return np.array(out).reshape(-1, 2)
 
 
 def outermost(points: Array) -> Array:
@@ -113,7 +191,7 @@ def outermost(points: Array) -> Array:
 
 EDGE = 0.046
 """Distance of what is written, from the picture's edges."""
-TITLE, NUMBER, RATE, LEGEND = 1 / 16, 1 / 23, 1 / 27, 1 / 25
+TITLE, NUMBER, RATE, LEGEND, NOTE = 1 / 16, 1 / 23, 1 / 27, 1 / 25, 1 / 30
 """Heights of letters."""
 LINE = 1.4
 """Distance from one line to the next, in heights of letters."""
@@ -155,6 +233,17 @@ def lines(title: str, numbers: Sequence[str], rate: str, aspect: float) -> list[
         out.append(LineSpec(words=words, x=EDGE, y=y, width=width, size=size, bold=bold, quiet=quiet))
         y += LINE * size
     return out
+
+
+def note(words: str, aspect: float, y: float) -> list[LineSpec]:
+    """Return the lines of a note on what the picture shows, from the height ``y`` down; none without words."""
+    if not words:
+        return []
+    size, broken = _broken(words, NOTE, sides(aspect)[0] - 2 * EDGE, bold=False)
+    return [
+        LineSpec(words=line, x=EDGE, y=y + LINE * size * k, width=size * width_of(line), size=size, quiet=True)
+        for k, line in enumerate(broken)
+    ]
 
 
 def box_of(lines: Sequence[LineSpec]) -> Box:
@@ -223,18 +312,18 @@ def _fitting(words: str, size: float, wide: float) -> float:
     return min(size, wide / width_of(words))
 
 
-def _broken(words: str, size: float, wide: float) -> tuple[float, list[str]]:
-    """Return the size and lines of a title.
+def _broken(words: str, size: float, wide: float, bold: bool = True) -> tuple[float, list[str]]:
+    """Return the size and lines of a title, or of words that are not ``bold``.
 
     It stands in one line, if need be smaller; else in two that are as alike as they can be.
     """
-    alone = min(size, wide / width_of(words, True))
+    alone = min(size, wide / width_of(words, bold))
     spaces = [k for k, letter in enumerate(words) if letter == " "]
     if alone >= SMALLER * size or not spaces:
         return alone, [words]
-    at = min(spaces, key=lambda k: max(width_of(words[:k], True), width_of(words[k + 1 :], True)))
+    at = min(spaces, key=lambda k: max(width_of(words[:k], bold), width_of(words[k + 1 :], bold)))
     both = [words[:at], words[at + 1 :]]
-    return min(size, *(wide / width_of(line, True) for line in both)), both
+    return min(size, *(wide / width_of(line, bold) for line in both)), both
 
 
 # Room for words: places of the picture in which nothing moves.

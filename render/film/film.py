@@ -283,7 +283,7 @@ class Film:
         """Return the subject of the film."""
         if self._way is None:
             machine = np.concatenate([self.space.machine, self._tubes])
-            return Subject(machine, self.space.around, self._drawn, machine)
+            return Subject(machine, self.space.around, self._drawn, machine, things=self.space.things)
         machine = np.concatenate([self._followed, self._tubes])
         return Subject(machine, np.zeros((0, 3)), self._drawn, machine, self._way)
 
@@ -320,10 +320,12 @@ class Film:
 
     @cached_property
     def _lines(self) -> list[LineSpec]:
-        """Return the lines of text at the upper left."""
+        """Return the lines of text at the upper left; parts that are shown and not built are noted below."""
         numbers = sorted({self.number(float(time)) for time in self._times} - {""})
         title, rate = arrows.title(self.motion, self.shot), arrows.rate(self.clock, self.shot)
-        return composing.lines(title, numbers, rate, self.aspect)
+        lines = composing.lines(title, numbers, rate, self.aspect)
+        lower = max((line.y + composing.LINE * line.size for line in lines), default=composing.EDGE)
+        return [*lines, *composing.note(self.parts.schematic, self.aspect, lower)]
 
     @cached_property
     def _words(self) -> Box:

@@ -25,6 +25,8 @@ from shared.contract.shot import Label, Trail
 # The space a mechanism sweeps over its whole motion: the camera shows it, and it decides the size of the studio.
 
 Array = NDArray[np.float64]
+LARGE = 0.3
+"""A piece is large if it is longer than this part of all that stands."""
 SAMPLES, MOST = 120, 1200
 """Poses over the motion from which the swept space is taken: of a turn or a second, and of the whole at most."""
 
@@ -69,6 +71,15 @@ class SweptSpace:
         """Return the points that stand still: the base and all that is fixed to it; none if nothing moves."""
         bodies = [cloud for name, cloud in self._bodies.items() if name == "ground"]
         return np.concatenate(bodies) if bodies and len(bodies) < len(self._bodies) else np.zeros((0, 3))
+
+    @cached_property
+    def things(self) -> list[Array]:
+        """Points (n, 3) of each large piece that stands: the plate, the column and the foot of a stand."""
+        if not len(self.around):
+            return []
+        size = float(np.linalg.norm(np.ptp(self.around, axis=0)))
+        pieces = self._outlines.get("ground", [])
+        return [piece for piece in pieces if float(np.linalg.norm(np.ptp(piece, axis=0))) > LARGE * size]
 
     def places(self, times: Array) -> Array:
         """Return the outermost points (T, n, 3) of all that moves at ``times`` (T,); none if nothing moves."""

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
 import msgspec
+import numpy as np
 
 from render.film.scene import PieceSpec, SurfaceSpec
 from render.film.section import WHOLE, cuts_of
+from render.film.solids import Array, prism, read_corners
 from shared.contract import AnyMotion, Motion3, Parts, Piece
 from shared.contract.materials import MATERIALS
 from shared.contract.parts import Vector, Z
@@ -45,7 +48,7 @@ def piece_specs(parts: Parts, shot: Shot, folder: Path, motion: AnyMotion | None
             name=name,
             stl=str((folder / piece.stl).resolve()),
             sha256=piece.stl_sha256,
-            surface=_surface(parts.mechanism, shot, body, name, piece),
+            surface=_surface(parts.mechanism, shot, body, name, piece, folder / piece.stl),
             turns_about=(piece.rolls.x, piece.rolls.y) if piece.rolls else None,
             cut=cuts.get((body, name), WHOLE).planes,
             fixed=cuts.get((body, name), WHOLE).fixed,
@@ -94,8 +97,39 @@ def _pieces(parts: Parts) -> Iterator[tuple[str, str, Piece]]:
     return ((body, name, piece) for body, solids in parts.bodies.items() for name, piece in solids.pieces.items())
 
 
-def _surface(mechanism: str, shot: Shot, body: str, name: str, piece: Piece) -> SurfaceSpec:
+ROUND, SIDES = 0.6, 20
+"""Part of its rim that makes a piece round, and the least number of its sides."""
+
+
+def axis_of(outline: Array) -> tuple[float, float] | None:
+    """Return the middle of the circle that most of a convex outline (2 n, 2) is on: such metal is turned.
+
+    None of an outline that is no circle. The circle is that of least squares, once more without what is off it.
+    """
+    rim = outline[: len(outline) // 2]
+    if len(rim) < SIDES:
+        return None
+    on_it, centre, radius = np.full(len(rim), True), np.zeros(2), 0.0
+    for _ in range(2):
+        rows = np.column_stack([rim[on_it], np.ones(int(on_it.sum()))])
+        u, v, w = np.linalg.lstsq(rows, (rim[on_it] ** 2).sum(axis=1), rcond=None)[0]
+        centre = np.array([u, v]) / 2
+        radius = math.sqrt(max(float(w + centre @ centre), 0.0))
+        off = np.abs(np.hypot(*(rim - centre).T) - radius)
+        on_it = off < 0.01 * radius
+        if on_it.sum() < SIDES:
+            return None
+    sides = np.linalg.norm(np.roll(rim, -1, axis=0) - rim, axis=1)
+    between = (rim + np.roll(rim, -1, axis=0)) / 2 - centre
+    arc = on_it & np.roll(on_it, -1) & (np.hypot(*between.T) > 0.97 * radius)  # a chord has its ends on the circle
+    share = float(sides[arc].sum() / max(sides.sum(), 1e-12))
+    return (round(float(centre[0]), 6), round(float(centre[1]), 6)) if share >= ROUND else None
+
+
+def _surface(mechanism: str, shot: Shot, body: str, name: str, piece: Piece, stl: Path) -> SurfaceSpec:
     chosen = _chosen(mechanism, shot, body, name, piece)
+    if chosen.finish == "brushed":
+        chosen = msgspec.structs.replace(chosen, turned=axis_of(prism(read_corners(stl))[:, :2]))
     if shot.transparent and {body, f"{body}/{name}"} & set(shot.transparent):
         chosen = as_pane(chosen)
     return neutral(chosen) if shot.show else chosen

@@ -34,6 +34,8 @@ class SurfaceSpec(msgspec.Struct, kw_only=True, frozen=True):
     colour: Colour
     finish: str
     roughness: float
+    turned: tuple[float, float] | None = None
+    """Axis (x, y of the body's frame, m) round which streaks of brushed metal go; null if they go lengthwise."""
 
 
 class PieceSpec(msgspec.Struct, kw_only=True, frozen=True):

@@ -177,6 +177,8 @@ class Parts(Strict, kw_only=True):
     provenance: Provenance
     mount: Mount = Mount()
     """Stand of ground in the world; files without it lie on a desk."""
+    schematic: str = ""
+    """Sentence on glass plates that may overlap, which stand for what cannot be built; empty if all can be."""
     bodies: dict[str, BodyParts]
     without_solids: list[str] = []
     """Bodies of mechanism.py that are left out here."""

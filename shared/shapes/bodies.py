@@ -43,6 +43,8 @@ class Bodies(dict[str, list[Solid]]):
         """Makes the solids of ground with a stand, once all solids are there; None where ground has what it needs."""
         self.mount: tuple[str, tuple[float, float, float]] | None = None
         """Kind and up of shared/contract/parts.py: how ground stands in the world; None where nobody says."""
+        self.schematic = ""
+        """Sentence on plates that may overlap, which are shown and not built; empty for parts that can be built."""
         self.notes: list[str] = []
         """Sentences for the user, which the parts stage prints."""
         self._touching: set[tuple[str, str]] = set()
@@ -141,6 +143,7 @@ class Bodies(dict[str, list[Solid]]):
                 joined.along |= operand.along
                 joined.space |= operand.space
                 joined.links |= operand.links
+                joined.schematic = joined.schematic or operand.schematic
                 joined.notes = list(dict.fromkeys([*joined.notes, *operand.notes]))
                 joined.mount = joined.mount or operand.mount
                 joined.stand = joined.stand or operand.stand

@@ -52,7 +52,7 @@ def gallery(command: Command, _: str, said: Mapping[str, str], run: Run) -> int:
     """
     bad = 0
     for name in all_mechanisms():
-        chain = (*stages.MOTION, stages.CLEARANCE, stages.SHOT, stages.POSTER)
+        chain = (*stages.MOTION, stages.CLEARANCE_OR_WARNING, stages.SHOT, stages.POSTER)
         code = run.all_of(stage.words(name, {**said, "aspect": "16:9"}) for stage in chain)
         if code >= 128:
             return code

@@ -47,6 +47,7 @@ CONDITIONS = {
     "--if-needed=model": "of full size, only if the motion needs their masses",
     "--if-needed=proof": "of full size, only if the motion needs their masses",
     "--or-none": "if there can be any",
+    "--or-warn": "for parts that can be built",
 }
 """Conditions under which a stage makes something, by the word that asks for it."""
 

@@ -64,7 +64,7 @@ OPTIONS: dict[str, Option] = {
         Option("gap", "what pieces keep apart on a plate in mm; 5 if not given", "MM", kept=True),
         Option("frame", "number of the frame, from 0", "N", default="0"),
         Option("frames", "numbers of frames: 0,30", "N,N", joint=","),
-        Option("view", "what is shown: reactions,velocities; all if not given", joint=","),
+        Option("view", "what is shown: reactions,velocities; all is all side by side", joint=","),
         Option("only", "these alone, commas between them; all if not given", "NAMES", joint=","),
         Option("watts", "power of this machine while it renders (W), to tell the energy", "W", kept=True),
         Option(
@@ -141,6 +141,8 @@ PARTS_FOR_MOTION = Stage("mechanisms", "parts", also=("--if-needed=motion",))
 """Parts whose masses the motion needs, because mechanism.py does not give them."""
 SOLVE = Stage("mechanisms", "solve")
 CLEARANCE = Stage("mechanisms", "clearance", solids=True)
+CLEARANCE_OR_WARNING = Stage("mechanisms", "clearance", also=("--or-warn",), solids=True)
+"""The proof among pictures, which go on where parts are shown and cannot be built."""
 SHOT = Stage("mechanisms", "shot")
 PRINT = Stage("mechanisms", "print", ("bed", "gap"), solids=True)
 PARTS_FOR_MODEL = Stage("mechanisms", "parts", also=("--if-needed=model",))

@@ -46,8 +46,8 @@ COMMANDS: dict[str, Command] = {
     for command in (
         Command(
             "run", "everything of one mechanism: parts, motion, clearance, report, plots, GLB, poster, film",
-            (*stages.MOTION, stages.CLEARANCE, stages.SHOT, stages.REPORT, stages.PLOTS, stages.GLB, stages.POSTER,
-             stages.FILM),
+            (*stages.MOTION, stages.CLEARANCE_OR_WARNING, stages.SHOT, stages.REPORT, stages.PLOTS, stages.GLB,
+             stages.POSTER, stages.FILM),
             example="mbsd run excavator --preset production",
         ),
         Command(

@@ -32,6 +32,7 @@ def test_the_stage_knows_what_can_be_drawn() -> None:
         ("reactions,velocities", ["velocities,reactions"]),  # one film, whatever the order
         ("skeleton", ["skeleton"]),
         ("each", list(animate_stage.QUANTITIES)),
+        ("all", ["all"]),
     ],
 )
 def test_views(view: str, films: list[str]) -> None:

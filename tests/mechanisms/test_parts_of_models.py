@@ -100,7 +100,8 @@ def _recorded(monkeypatch: pytest.MonkeyPatch, sides: list[float]) -> list[dict[
     def build_parts(m: Mechanism, solution: Any) -> Any:
         side = sides[min(len(asked), len(sides)) - 1]
         cube = [Solid("arm", cq.Workplane().box(side, side, side), "steel", 0)]
-        return SimpleNamespace(solids=lambda: {"ground": cube, "arm": cube})
+        solids = lambda: {"ground": cube, "arm": cube}  # noqa: E731
+        return SimpleNamespace(solids=solids, shown=solids)
 
     monkeypatch.setattr(automatic_solids, "bare_solution", solved)
     monkeypatch.setattr(automatic, "automatic", build_parts)

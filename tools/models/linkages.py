@@ -248,3 +248,20 @@ def _leg(m: Mechanism, frame: Body, number: int, shaft: float, side: int, phase:
     ends = {crank: (axis, hub), upper: (pivot, top), j: (hub, top), k: (hub, knee)}
     ends |= {c: (pivot, knee), f: (back, heel), foot: (heel, knee)}
     m.start_near(**{body.name: math.degrees(math.atan2(*(q - p)[::-1])) for body, (p, q) in ends.items()})
+
+
+def bank(pistons: int = 4, throw: float = 0.04, rod: float = 0.14) -> Mechanism:
+    """Return pistons of one crank whose bores share an axis: in one plane none has room beside another."""
+    m = Mechanism("bank")
+    crank = m.body("crank")
+    m.revolute("shaft", m.ground.at(0, 0), crank.origin)
+    for k in range(pistons):
+        turn = math.pi * (k in (1, 2))
+        link, piston = m.bar(f"rod{k + 1}", rod), m.body(f"piston{k + 1}")
+        m.revolute(f"throw{k + 1}", crank.at(throw * math.cos(turn), throw * math.sin(turn)), link.start)
+        m.revolute(f"wrist{k + 1}", link.end, piston.origin)
+        m.prismatic(f"bore{k + 1}", m.ground.at(0, 0, math.pi / 2), piston.origin)
+        m.start_near(**{link.name: 90})
+    m.drive_angle("motor", crank, constant_rate(RATE))
+    m.start_near(crank=0)
+    return m

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 
 import cadquery as cq
@@ -13,8 +13,9 @@ from mbsd import Mechanism, Solution
 from mbsd.model.joints.ratios import helper_bodies
 from mechanisms.stages.automatic import assembly
 from mechanisms.stages.automatic.body_shapes import Joined
-from mechanisms.stages.automatic.decision import decided
+from mechanisms.stages.automatic.decision import NoOrder, decided
 from mechanisms.stages.automatic.features import laid_out
+from mechanisms.stages.automatic.glass import WISHED, Panes, all_of_glass, plain_layout, sentence_of
 from mechanisms.stages.automatic.layout.items import Heights, Need, heights
 from mechanisms.stages.automatic.layout.layout import Layout, Springs
 from mechanisms.stages.automatic.layout.motion import poses_of, times_of
@@ -30,6 +31,7 @@ from mechanisms.stages.automatic.layout.sizes import (
     sizes,
     thin_pins,
 )
+from mechanisms.stages.automatic.looks import looks_of
 from mechanisms.stages.automatic.own_solids import OwnSolid, read_solid
 from mechanisms.stages.automatic.pins.pins import places
 from mechanisms.stages.automatic.rolling.roads import runs_on_ground
@@ -70,6 +72,9 @@ def refuse_material(m: Mechanism, body: str, material: str) -> None:
         )
 
 
+MOST_GLASS = 0.5
+"""Where more of the bodies would be of glass, all are."""
+
 # Parts from the model and its motion: ``automatic(m)`` plans them, ``solids()`` builds them.
 #
 # def parts(p: Params) -> dict[str, list[Solid]]:
@@ -92,6 +97,7 @@ class Automatic:
         self._own: dict[str, OwnSolid] = {}
         self._joined: list[Joined] = []
         self._left_out: set[str] = helper_bodies(m)
+        self._glass: set[str] = set()
         self._touching: set[tuple[str, str]] = set()
         self._marks: list[tuple[str, Mark]] = []
         self._base_under: list[Point] = []
@@ -194,6 +200,16 @@ class Automatic:
         self._left_out.add(body)
         self._plan_anew()
 
+    def show_as_glass(self, body: str) -> None:
+        """Show ``body`` as a thin glass plate above all layers, which may overlap others.
+
+        Parts with one cannot be printed or proven clear. Raises UserError where bodies have places z.
+        """
+        self._known(body)
+        self._refuse_along("show_as_glass", "leave it out (made.leave_out)")
+        self._glass.add(body)
+        self._plan_anew()
+
     def may_touch(self, first: str, second: str) -> None:
         """Let two bodies (one may be ground) share room: they touch by design.
 
@@ -278,17 +294,21 @@ class Automatic:
         """
         if self.along is not None:
             return self._solids_along(self.along)
+        if self._glass >= self._moving:
+            return all_of_glass(self._plain_layout, self.solution, self._plain_mount)
         plan = self.plan()
         made = Bodies(assembly.fitted(assembly.built(plan, self.heights, engraved_too)) | self._replaced)
         for body, own in self._own.items():
             made[body][0] = own.in_place(self.m.name, plan, made[body][0], self.span(body))
         made.notes = self._notes()
+        if self._glass:
+            self._add_glass(made)
         scale, plate = self.sizes.scale, assembly.back_plate(plan)
         poses = {body: pose * [scale, scale, 1.0] for body, pose in self.layout.poses.items()}
         hold(made, self.mount, plate and plate.scaled(scale), poses, self.sizes)
-        for body in self.layout.apart.intersection(self.m.bodies):
+        for body in self._left_out.intersection(self.m.bodies):
             made.leave_out(body)
-        for rod, joint in self.layout.rods.items():
+        for rod, joint in rods_of(self.m, self._left_out).items():
             made.join_places(rod, *places(joint))
         for first, second in map(tuple, self.layout.touching | self.layout.pressing):
             if first in made and second in made:
@@ -300,6 +320,57 @@ class Automatic:
             else:
                 made.may_touch(part.body, body)  # solids that are replaced may be anything
         return made
+
+    def shown(self) -> Bodies:
+        """Return :meth:`solids`, or where they cannot be built, glass plates that may overlap in their place.
+
+        Bodies that leave no order of layers are of glass; all are where that does not help. ``made.schematic`` says so.
+        """
+        first: UserError | None = None
+        before = set(self._glass)
+        while True:
+            try:
+                made = self.solids()
+                break
+            except UserError as error:
+                first = first or error
+                more = set(error.bodies) & self._moving - self._glass if isinstance(error, NoOrder) else set[str]()
+                self._glass |= more
+                self._plan_anew()
+                if not more or len(self._glass) > MOST_GLASS * len(self._moving):
+                    made = all_of_glass(self._plain_layout, self.solution, self._plain_mount)
+                    break
+        self._glass = before
+        self._plan_anew()
+        if first is not None:
+            bodies = first.bodies if isinstance(first, NoOrder) else ()
+            made.schematic = sentence_of(bodies) if bodies else sentence_of((), _why(first))
+            made.notes = [*made.notes, f"{made.schematic}. {first}"]
+        return made
+
+    def _add_glass(self, made: Bodies) -> None:
+        layout, heights = self._plain_layout, self.heights
+        bodies = [body for body in layout.moving if body in self._glass or body not in self.layout.moving]
+        top = max([heights.roof, *(z for z in heights.bottoms)]) + heights.thickness
+
+        def span(body: str) -> tuple[float, float]:
+            return heights.bottom(body), heights.top(body)
+
+        Panes(layout, self.solution, tuple(bodies), top, span).add(made)
+        made.schematic = sentence_of([body for body in bodies if body in self._glass], WISHED)
+
+    @property
+    def _moving(self) -> set[str]:
+        """Bodies of the model that move and are not left out."""
+        return {body for body in self.m.bodies if body != "ground"} - self._left_out
+
+    @property
+    def _plain_layout(self) -> Layout:
+        return plain_layout(self.m, self.wishes()[0], self.solution, self._left_out)
+
+    @property
+    def _plain_mount(self) -> Mount:
+        return mounted(self.m.gravity or (0.0, 0.0), wished())
 
     def _solids_along(self, along: Along) -> Bodies:
         made = Bodies(assembly.fitted(solids(along, self._materials, self.mount, self._base_under)) | self._replaced)
@@ -344,6 +415,11 @@ class Automatic:
 
     @cached_property
     def _decided(self) -> tuple[Layout, dict[str, int]]:
+        if looks_of(self.m):
+            try:
+                return decided(partial(self._layout, looks=True), self.wishes(), self._layers)
+            except NoOrder:  # there is no room for what bodies look like
+                pass
         return decided(self._layout, self.wishes(), self._layers)
 
     def wishes(self) -> list[Sizes]:
@@ -364,13 +440,19 @@ class Automatic:
         return [note] if note else []
 
     def _layout(
-        self, size: Sizes, springs: Springs, tubes: bool = False, tall: bool = False, pointers: bool = False
+        self,
+        size: Sizes,
+        springs: Springs,
+        tubes: bool = False,
+        tall: bool = False,
+        pointers: bool = False,
+        looks: bool = False,
     ) -> Layout:
         poses = poses_of(self.solution, size.of_metres(1.0))
         layout = Layout(self.m, size, poses, times_of(self.solution), springs)
-        layout.apart = frozenset(self._left_out)
+        layout.apart = frozenset(self._left_out | self._glass)
         layout.touching = frozenset(map(frozenset, self._touching))
-        return laid_out(layout, self._joined, tubes, tall, pointers)
+        return laid_out(layout, self._joined, tubes, tall, pointers, looks)
 
     def _plan_anew(self) -> None:
         """Forget what was found before a wish."""
@@ -379,6 +461,11 @@ class Automatic:
 
     def _known(self, body: str, ground: bool = False) -> None:
         refuse_unknown(self.m, body, self._left_out, ground)
+
+
+def _why(error: UserError) -> str:
+    """Return why all is of glass, in few words, where it is not that some bodies are in each other's way."""
+    return "no order of layers was found" if isinstance(error, NoOrder) else "these lengths leave no room for parts"
 
 
 def automatic(

@@ -18,6 +18,18 @@ from shared.stage.errors import UserError
 
 # Why there is no order of layers: the fewest bodies that cannot pass each other, and what to do.
 
+
+class NoOrder(UserError):
+    """Error for bodies that cannot pass each other in layers."""
+
+    def __init__(self, message: str, bodies: Sequence[str] = ()) -> None:
+        super().__init__(message, bodies)
+        self.bodies = tuple(bodies)
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
 REPORTED = 4
 """So many meetings are reported."""
 SLOTTED = "the slotted plate of "
@@ -27,8 +39,8 @@ CROSSED = (
 )
 
 
-def refusal(layout: Layout, fixed: Mapping[str, int], purse: Purse | None = None) -> str:
-    """Return a sentence or two on meetings that together leave no order.
+def refusal(layout: Layout, fixed: Mapping[str, int], purse: Purse | None = None) -> NoOrder:
+    """Return an error with a sentence or two on meetings that together leave no order.
 
     Without any one of them there would be one.
     """
@@ -38,18 +50,19 @@ def refusal(layout: Layout, fixed: Mapping[str, int], purse: Purse | None = None
     crossed = any(all(items[k].what.startswith(SLOTTED) for k in rule) for rule in pins)
     wish = "make pins thinner still (automatic(m, pin=...))" if layout.sizes.ratio == 1.0 else "make the model larger"
     meetings = [_meeting(layout, rule) for rule in _first_of_each(layout, pins)[:REPORTED]]
-    return (
+    return NoOrder(
         f"{layout.m.name}: no order of layers lets {_listed(bodies)} pass each other with pins of "
         f"{layout.sizes.finished_pin:g} mm, on the base or on bridges, with one of them built up of "
         f"two webs: {'; '.join(meetings)}. Make links shorter or move joints "
         f"apart so that one stays clear of the other, {wish}, or shape them by hand in parts.py"
-        f"{CROSSED if crossed else ''}"
+        f"{CROSSED if crossed else ''}",
+        bodies,
     )
 
 
-def undecided(layout: Layout) -> str:
-    """Return a sentence for a search that was given up."""
-    return (
+def undecided(layout: Layout) -> NoOrder:
+    """Return the error of a search that was given up; it knows no bodies."""
+    return NoOrder(
         f"{layout.m.name}: the search for an order of layers of {len(layout.layered)} bodies and "
         f"{len(layout.conflicts)} places where something meets was given up after {ALL} conflicts, with none "
         "found: there may be one. Give some bodies their layer in parts.py (made.layer), move joints apart, make pins "
@@ -126,7 +139,7 @@ def decided(layout_of: LayoutOf, wishes: Sequence[Sizes], fixed: Mapping[str, in
     try:
         return _decided(tried, wishes)
     except Undecided:
-        raise UserError(undecided(tried.layout(wishes[0], Springs()))) from None
+        raise undecided(tried.layout(wishes[0], Springs())) from None
 
 
 def _decided(tried: _Tried, wishes: Sequence[Sizes]) -> Outcome:
@@ -142,7 +155,7 @@ def _decided(tried: _Tried, wishes: Sequence[Sizes]) -> Outcome:
             outcome = tried.with_some_springs(wishes[0], last.springs.names, bridges)
             if outcome is not None:
                 return outcome
-    raise UserError(refusal(last, tried.fixed, tried.purse))
+    raise refusal(last, tried.fixed, tried.purse)
 
 
 @dataclass(frozen=True)

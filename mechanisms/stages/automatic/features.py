@@ -16,6 +16,7 @@ from mechanisms.stages.automatic.layout.items import Anchor, Heights
 from mechanisms.stages.automatic.layout.layout import Feature, Layout
 from mechanisms.stages.automatic.layout.plan import CONTACT_KINDS, DRIVER_KINDS, FORCE_KINDS, KINDS, Plan
 from mechanisms.stages.automatic.layout.sizes import ROD, Kinds
+from mechanisms.stages.automatic.looks import shaped
 from mechanisms.stages.automatic.pins.free_bodies import free_bodies, styluses, weights
 from mechanisms.stages.automatic.pins.pins import add_poses
 from mechanisms.stages.automatic.pins.stops import stops
@@ -121,11 +122,13 @@ def _loose_eyes(joints: list[Joint], features: list[Feature], layout: Layout) ->
 # A layout with its features: those of joints and forces, then what free bodies, weights and traced points show.
 
 
-def laid_out(layout: Layout, joined: Sequence[Joined], tubes: bool, tall: bool, pointers: bool) -> Layout:
+def laid_out(
+    layout: Layout, joined: Sequence[Joined], tubes: bool, tall: bool, pointers: bool, looks: bool = False
+) -> Layout:
     """Return the layout with all that takes room in it. Raises UserError for what has no part.
 
     ``joined``: pieces that the author added; ``tubes``: wheels stand on tubes; ``tall``: with styluses that stand up,
-    not flush ones; ``pointers``: with those of points on rims.
+    not flush ones; ``pointers``: with those of points on rims; ``looks``: bodies look like what their names say.
     """
     add_poses(layout)
     layout.features = gathered(layout)
@@ -133,5 +136,6 @@ def laid_out(layout: Layout, joined: Sequence[Joined], tubes: bool, tall: bool, 
     layout.features += weights(layout, heavy=True)
     layout.features += styluses(layout, tall, pointers)
     layout.features += weights(layout, heavy=False)
+    layout.features += shaped(layout, [own.body for own in joined]) if looks else []
     layout.features += joined
     return with_own_layers(layout, tubes)

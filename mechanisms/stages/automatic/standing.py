@@ -401,13 +401,17 @@ class Stand:
         ]
 
 
+APART = 1.1
+"""Least distance of a screw of a narrow foot from its middle, in seats: two that only touched would share an edge."""
+
+
 def _size(span: tuple[float, float]) -> float:
     return span[1] - span[0]
 
 
 def _below(own: Dimensions, below: Bolt) -> list[tuple[float, float, float]]:
     """Return places, on the lower face of the foot, of screws that go up into the column."""
-    half = max(own.widths[0] / 2 - 2.2 * below.seat, below.seat)
+    half = max(own.widths[0] / 2 - 2.2 * below.seat, APART * below.seat)
     z = sum(own.column[1]) / 2
     return [(own.middle + side * half, own.foot[1][0], z) for side in (-1.0, 1.0)]
 

@@ -34,7 +34,7 @@ from shared.contract import Motion, Parts, Provenance, is_in_space, read_motion,
 from shared.contract.clearance import Clearance, PairClearance, Proof, write_clearance
 from shared.contract.quantity import counted
 from shared.shapes.units import metres, mm
-from shared.stage.console import Shown, say
+from shared.stage.console import Shown, say, warn
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash
 from shared.stage.paths import ROOT, Out
@@ -57,6 +57,8 @@ REACH_OF_MODELS = 1.0
 """The same of small models, of whose pieces most are nearer to each other than that (mm)."""
 LOOKS = 4
 """Moments at which is looked whether what slides stays near."""
+SCHEMATIC = "`mbsd parts` says what is in the way"
+"""Where to read more on parts that are shown and not built."""
 PACKAGES = ("manifold3d", "numpy")
 SOURCES = [
     *(ROOT / "mechanisms" / "stages" / name for name in ("clearance", "parts_files.py")),
@@ -81,6 +83,8 @@ def run(name: str, scale: str = "") -> None:
     if stage.is_fresh():
         say("clearance", f"{out.title}: nothing to do")
         return
+    if parts.schematic:
+        raise UserError(f"{out.title}: {parts.schematic}; so there is nothing to prove. {SCHEMATIC}")
     from mechanisms.stages.clearance.path import at_scale, what_shrinks
     from mechanisms.stages.clearance.pieces import read_pieces
 
@@ -96,6 +100,20 @@ def run(name: str, scale: str = "") -> None:
     write_clearance(out.clearance, checked)
     stage.record()
     say("clearance", _summary(checked, out.title) + _parted(parts, motion))
+
+
+def run_or_warn(name: str) -> None:
+    """Run the stage for what goes on anyway, as pictures: parts that are shown and not built are reported.
+
+    Raises as :func:`run` for all others.
+    """
+    out = Out(name)
+    try:
+        run(name)
+    except UserError as error:
+        if not read_parts(out.parts, out.name).schematic:
+            raise
+        warn("clearance", str(error))
 
 
 def is_fresh(name: str) -> bool:

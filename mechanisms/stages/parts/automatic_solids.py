@@ -96,7 +96,10 @@ ALIKE = 1e-9
 
 
 def solids_of(name: str) -> dict[str, list[Solid]]:
-    """Return every piece by body. Raises UserError where the model cannot move, or has no automatic parts."""
+    """Return every piece by body; what cannot be built is of glass, but for a model at a scale, which is printed.
+
+    Raises UserError where the model cannot move, has no automatic parts, or its printed model cannot be built.
+    """
     if is_in_space(model_of(name)[0]):
         from mechanisms.stages.automatic.space.machine import solids_in_space
 
@@ -108,13 +111,13 @@ def solids_of(name: str) -> dict[str, list[Solid]]:
         solution = bare_solution(name, masses_of_machine(name))
         return automatic(solution.mechanism, solution=solution).solids()
     solution = bare_solution(name)
-    solids = automatic(solution.mechanism, solution=solution).solids()
+    solids = automatic(solution.mechanism, solution=solution).shown()
     if not depends_on_masses(name, solution):
         return solids
     masses = _masses(solids)
     for _ in range(ROUNDS):
         solution = bare_solution(name, masses)
-        solids = automatic(solution.mechanism, solution=solution).solids()
+        solids = automatic(solution.mechanism, solution=solution).shown()
         before, masses = masses, _masses(solids)
         if all(abs(masses[body].mass - before[body].mass) <= ALIKE * before[body].mass for body in before):
             break

@@ -115,12 +115,15 @@ def described_body(
     along: Measured = PLANAR,
     kept: KeptPieces | None = None,
     done: Callable[[], object] = bool,
+    unsound: dict[str, UserError] | None = None,
     link: tuple[str, str, tuple[float, float, float]] | None = None,
 ) -> BodyParts:
     """Describe a body and add its files to ``files``; ``places`` are those that a rod joins.
 
-    ``link``: joint in space whose massless link it is, with the body and direction of its z axis. Pieces
-    that are ``kept`` are not made again; ``done`` is called after each piece.
+    ``along``: z of the solids is that of the model, so masses have it, too. Pieces that are ``kept`` are not made
+    again; ``done`` is called after each piece. A solid that nobody shaped and that is refused becomes a pane of glass,
+    and is entered with its error into ``unsound`` where that is given. ``link``: joint in space whose massless link it
+    is, with the body and direction of its z axis.
 
     Raises UserError naming the solid that is refused.
     """
@@ -128,7 +131,15 @@ def described_body(
 
     pieces: dict[str, Piece] = {}
     for solid in solids:
-        pieces[solid.name] = _piece(name, body, solid, files, along, kept)
+        try:
+            pieces[solid.name] = _piece(name, body, solid, files, along, kept)
+        except UserError as error:
+            if unsound is None or not solid.fitted:
+                raise
+            from mechanisms.stages.automatic.glass import pane_for
+
+            unsound[solid.name] = error
+            pieces[solid.name] = _piece(name, body, pane_for(solid), files, along)
         done()
     main = pieces[solids[0].name]
     mass = combined(piece.mass for piece in pieces.values() if not piece.dressing)

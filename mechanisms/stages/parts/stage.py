@@ -180,20 +180,39 @@ def _described(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Re
     measured = Measured(getattr(bodies, "along", False), getattr(bodies, "space", False))
     links = getattr(bodies, "links", {})
     shown, kept = Shown("parts", out.title, sum(map(len, bodies.values())), "solids written"), _kept_pieces(out)
+    unsound: dict[str, UserError] | None = {} if wish.by_itself and wish.scale is None else None
     described = {
-        body: described_body(name, body, solids, files, rods.get(body), measured, kept, shown.advance, links.get(body))
+        body: described_body(
+            name, body, solids, files, rods.get(body), measured, kept, shown.advance, unsound, links.get(body)
+        )
         for body, solids in bodies.items()
     }
+    for error in (unsound or {}).values():
+        warn("parts", f"{error}; until then it is shown as a pane of glass")
     document = Parts(
         mechanism=name,
         provenance=Provenance(inputs=key, versions=versions(*PACKAGES)),
         mount=mount_of(name, bodies, wish.mount),
+        schematic=getattr(bodies, "schematic", "") or _unsound(list(unsound or ())),
         bodies=described,
         without_solids=sorted(getattr(bodies, "left_out", ())),
         may_touch=sorted(getattr(bodies, "touching", ())),
         pieces_may_touch=sorted(getattr(bodies, "pieces_touching", ())),
     )
     return _Result(document, files, reads, inputs)
+
+
+def _unsound(pieces: list[str]) -> str:
+    """Return the sentence on pieces that are shown as panes; nothing without any."""
+    from mechanisms.stages.automatic.glass import sentence_of
+
+    return (
+        sentence_of(
+            [piece.replace("_", " ") for piece in pieces], f"{{}} {'is' if len(pieces) == 1 else 'are'} no closed solid"
+        )
+        if pieces
+        else ""
+    )
 
 
 def _of_cluster(out: Out, given: Any, wish: _Wish, recorder: Recorder) -> _Result | None:

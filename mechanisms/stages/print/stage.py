@@ -6,6 +6,7 @@ import math
 import re
 from typing import TYPE_CHECKING
 
+from mechanisms.stages.clearance.stage import SCHEMATIC
 from shared.contract import Parts, read_parts
 from shared.contract.quantity import counted
 from shared.stage.console import say, warn
@@ -54,6 +55,8 @@ def run(name: str, bed: str = "", gap: str = "", scale: str = "") -> None:
     out = Out(name, at)
     size, apart = bed_of(bed or BED), gap_of(gap or GAP)
     parts = read_parts(out.parts, out.name)
+    if parts.schematic:
+        raise UserError(f"{out.title}: {parts.schematic}; so there is nothing to print. {SCHEMATIC}")
     key = key_of(out.parts, sources_hash(*SOURCES), versions(*PACKAGES), size, apart)
     stage = Stage(out, "print", key, [out.print_folder / "pieces.md"])
     if stage.is_fresh():

@@ -212,9 +212,14 @@ def _anodised(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
 
 
 def _brushed(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
-    """Return metal brushed lengthwise: fine streaks in roughness and tone along x of the body."""
-    streaks = _noise(graph, _place(graph, (14.0, 900.0, 40.0), grain), 3.0, 0.6)
-    tangent = graph.add("Tangent", {"direction_type": "RADIAL", "axis": "Y"}).outputs[0]
+    """Return metal brushed lengthwise: fine streaks in roughness and tone along x of the body.
+
+    Those of a turned piece go round its axis.
+    """
+    axis = surface.turned
+    place = _place(graph, (14.0, 900.0, 40.0), grain) if axis is None else _radius(graph, axis, grain)
+    streaks = _noise(graph, place, 3.0, 0.6)
+    tangent = graph.add("Tangent", {"direction_type": "RADIAL", "axis": "Y" if axis is None else "Z"}).outputs[0]
     return _principled(
         graph,
         Base_Color=_toned(graph, surface.colour, _swing(graph, streaks, 0.68, 0.20)),
@@ -223,6 +228,17 @@ def _brushed(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
         Anisotropic=0.6,
         Tangent=tangent,
     )
+
+
+def _radius(graph: Graph, axis: tuple[float, float], grain: float) -> Any:
+    """Return a place that depends on the distance from an axis of the body alone."""
+    place = graph.add("SeparateXYZ", Vector=graph.add("TexCoord").outputs["Object"]).outputs
+    square = [
+        graph.math("POWER", graph.math("SUBTRACT", place[name], value), 2.0)
+        for name, value in zip("XY", axis, strict=True)
+    ]
+    away = graph.math("SQRT", graph.math("ADD", *square))
+    return graph.add("CombineXYZ", X=graph.math("MULTIPLY", away, 900.0 / grain)).outputs[0]
 
 
 def _polished(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
@@ -300,13 +316,27 @@ def _wood(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
     )
 
 
+MILKY = 0.4
+"""Part of coloured glass that scatters light."""
+
+
 def _glass(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
-    """Return a pane: it tints what is behind and mirrors at a flat angle; light passes straight through."""
+    """Return a pane: it tints what is behind and mirrors at a flat angle; light passes straight through.
+
+    One of a strong colour is a little milky, so that it shows before what is dark.
+    """
     mirror = graph.add("BsdfGlossy", Color=(1.0, 1.0, 1.0), Roughness=0.06).outputs[0]
     clear = graph.add("BsdfTransparent", Color=surface.colour).outputs[0]
+    milky = MILKY * min(1.0, 2.0 * (max(surface.colour) - min(surface.colour)))
+    if milky > 0.2 * MILKY:
+        clear = _blended(graph, milky, clear, graph.add("BsdfDiffuse", Color=surface.colour).outputs[0])
+    return _blended(graph, graph.add("Fresnel", IOR=1.45).outputs[0], clear, mirror)
+
+
+def _blended(graph: Graph, part: Any, first: Any, second: Any) -> Any:
+    """Return a shader that is the second by a ``part``, else the first."""
     mix = graph.add("MixShader")
-    part = graph.add("Fresnel", IOR=1.45).outputs[0]
-    for index, value in enumerate((part, clear, mirror)):
+    for index, value in enumerate((part, first, second)):
         graph.set(mix, index, value)
     return mix.outputs[0]
 

@@ -57,9 +57,7 @@ class Over(msgspec.Struct, kw_only=True, frozen=True):
     """The overlay of a picture: words, strip and leaders; Blender draws none of it."""
 
     title: float = 0.0
-    """Visibility of the title, 0 .. 1, over a picture that is dark and out of focus."""
-    focus: float = 0.0
-    """Sharpness of that picture."""
+    """Visibility of the title, 0 .. 1, over a picture that is darker."""
     ending: float = 0.0
     """Visibility of the words of the end."""
     caption: str = ""

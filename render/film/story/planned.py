@@ -22,6 +22,8 @@ from shared.stage.errors import UserError, did_you_mean
 
 BUDGET = 2.2
 """Pictures of a story beside those of the loop film; starting Blender twice takes the rest up to 2.5."""
+SHORTEST = 3.0
+"""Seconds of the shortest loop film that counts for that: a story of fewer pictures would stand still."""
 WAYS = ((True, 1.0), (False, 1.0), (False, 0.75), (False, 0.55), (False, 0.4), (False, 0.25), (False, 0.12))
 """Turning of the camera while the machine is shown, and the part of the seconds of moves; the first pair that fits."""
 ARROWED = 2.6
@@ -49,7 +51,8 @@ def planned(
     scenery = replace(scenery_of(film, forces, reasons, preset), cut=cut, shows=shows)
     if seconds:
         return _assemble(scenery, [loop(scenery, seconds)])
-    most = BUDGET * min(film.clock.frames, film.clock.moving + 1) * (2 / scenery.step)
+    loop_frames = max(min(film.clock.frames, film.clock.moving + 1), SHORTEST * film.shot.fps)
+    most = BUDGET * loop_frames * (2 / scenery.step)
     story = _story(scenery)
     for turning, scale in WAYS[1:]:
         if _cost(story) <= most:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -105,8 +107,17 @@ class Warp:
         return (self.time_at(high) - self.time_at(low)) / max(high - low, 1e-12)
 
     def shown_rate(self, s: float) -> float | None:
-        """Return the rate that is written at film second ``s``, in steps: it changes all the time."""
-        return stepped(self.rate(s))
+        """Return the rate that is written at film second ``s``, in steps; None while no step holds long enough."""
+        return next((rate for begin, end, rate in self._held if begin <= s < end), None)
+
+    @cached_property
+    def _held(self) -> list[tuple[float, float, float]]:
+        """Begin, end (s) and step of each stretch in which a step of the rate holds."""
+        seconds = np.linspace(0.0, self.seconds, ROWS)
+        steps = [stepped(self.rate(float(s))) for s in seconds]
+        changes = [0, *(k for k in range(1, ROWS) if steps[k] != steps[k - 1]), ROWS - 1]
+        stretches = [(float(seconds[a]), float(seconds[b]), steps[a]) for a, b in pairwise(changes)]
+        return [stretch for stretch in stretches if stretch[1] - stretch[0] >= SHOWN]
 
 
 def stepped(rate: float) -> float:

@@ -54,7 +54,8 @@ class Stand:
 def stand(subject: Subject, up: Vector, view: View) -> Stand:
     """Return the nearest stand from which a camera holds its subject, as films of one shot do."""
     few, around, drawn = (in_studio(points, up) for points in (subject.few, subject.around, subject.drawn))
-    position, distance = view.stand(held(view, few, around, drawn, few))
+    things = [in_studio(thing, up) for thing in subject.things]
+    position, distance = view.stand(held(view, few, around, drawn, few, things))
     target = position + axes(view.azimuth, view.elevation)[2] * distance
     return Stand(point(target), view.azimuth, view.elevation, distance, view.lens)
 

@@ -80,7 +80,7 @@ def words_in(language: str, mechanism: str) -> Callable[..., str]:
 
 
 def rate_words(rate: float, say: Callable[..., str]) -> str:
-    """Return how fast time passes, in two figures: a ramp is readable while it changes."""
+    """Return how fast time passes, in one figure, in two below twice."""
     if rate <= 1e-6:
         return say("stopped")
     if abs(rate - 1) < SAME:
@@ -88,7 +88,7 @@ def rate_words(rate: float, say: Callable[..., str]) -> str:
     if abs(rate - 1) < ABOUT:
         return say("about")
     factor = 1 / rate if rate < 1 else rate
-    return say("slower" if rate < 1 else "faster", factor=figures(factor, 2 if factor < 100 else 1))
+    return say("slower" if rate < 1 else "faster", factor=figures(factor, 1 if factor >= 2 else 2))
 
 
 def plain(name: str) -> str:

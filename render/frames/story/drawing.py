@@ -16,8 +16,8 @@ from render.film.story.frame import Leader, Note, Over
 from render.frames.story.strip import CARD, INK, LINE, QUIET, Strip, card, fitted, font, readable
 from render.letters import width_of
 
-DARK, SOFT = 0.36, 1 / 42
-"""Light that is left behind a title, and how soft the picture is there, in its width."""
+DARK = 0.6
+"""Light that a title takes from the picture behind it."""
 NAME, SAID = 1 / 9.5, 1 / 26
 """Heights of letters of a title, in the picture's shorter side."""
 ACCENT = (255, 142, 62)
@@ -56,7 +56,7 @@ class Drawing:
 
     def frame(self, picture: Any, over: Over) -> Any:
         """Return the picture (RGB) with all that lies over it."""
-        page = self._titled(picture, over) if over.title > 0 or (over.focus < 1 and over.title) else picture.copy()
+        page = self._titled(picture, over) if over.title > 0 else picture.copy()
         layer = self._layer(over)
         if layer is not None:
             page.paste(layer, (0, 0), layer)
@@ -70,10 +70,8 @@ class Drawing:
         return page
 
     def _titled(self, picture: Any, over: Over) -> Any:
-        from PIL import Image
-
-        soft = _soft(picture.tobytes(), picture.size)
-        page = Image.blend(soft, picture, over.focus)
+        light = 1.0 - DARK * over.title
+        page = picture.point([round(light * value) for value in range(256)] * 3)
         words = self._title_words
         page.paste(words, (0, 0), _faded(words, over.title))
         return page
@@ -234,15 +232,6 @@ def _faded(layer: Any, shown: float) -> Any:
     """Return the alpha of a layer, as far as it is shown."""
     alpha = layer.getchannel("A")
     return alpha if shown >= 1 else alpha.point([round(shown * value) for value in range(256)])
-
-
-@lru_cache(maxsize=1)
-def _soft(content: bytes, size: tuple[int, int]) -> Any:
-    """Return the picture, dark and out of focus."""
-    from PIL import Image, ImageFilter
-
-    picture = Image.frombytes("RGB", size, content).filter(ImageFilter.GaussianBlur(SOFT * size[0]))
-    return picture.point([round(DARK * value) for value in range(256)] * 3)
 
 
 @lru_cache(maxsize=2)

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import msgspec
 import numpy as np
 
+from render.film import composing
+from render.film.arrows import Arcs, Arrows
 from render.film.camera import angles
 from render.film.film import Film
 from render.film.inputs import refuse_missing
@@ -19,6 +22,7 @@ from render.film.story.frame import Picture
 from render.film.story.planned import planned
 from render.film.story.story import Story
 from render.film.story.words import plain
+from render.film.vectors import rounding
 from render.frames.frames import Pictures
 from render.frames.story.drawing import BETWEEN, Drawing, caption_lines
 from render.frames.story.strip import Strip
@@ -40,6 +44,8 @@ from shared.stage.paths import Out
 # The pictures of a story: states of its film with and without arrows, kept by what they show as all frames are.
 
 Around = tuple[Picture, Picture, Picture]
+UNDER_RATE = 0.125
+"""Height at which notes on parts that cannot be built stand, below the rate (the picture's shorter side)."""
 
 
 @dataclass
@@ -52,11 +58,13 @@ class StoryPictures(Pictures):
 
     @cached_property
     def _scene(self) -> Scene:
-        return msgspec.structs.replace(self.film.scene, writing=Writing())
+        scene, film = self.film.scene, self.film
+        note = composing.note(film.parts.schematic, film.aspect, UNDER_RATE)
+        return msgspec.structs.replace(scene, writing=Writing(lines=note, on_bright=scene.writing.on_bright))
 
     @property
     def shown(self) -> Scene:
-        """The scene of the film, without what is written over it: stories have their own words."""
+        """The scene of the film with its note alone written over it: stories have their own words."""
         return self._scene
 
     @property
@@ -163,6 +171,8 @@ def telling_of(
     film = Film(whole, parts, shown_plain(shot), out.parts_folder, preset.aspect)
     chosen = _chosen(shot.story.event, why)
     arrows = _with_arrows(show or _shows(motion, chosen), film)
+    if not show and arrows is not None and chosen is not None:
+        arrows = _in_balance(arrows, chosen)
     cut = _cut_open(shot, film)
     story = planned(film, arrows, why, preset, loop, cut, insights(motion))
     clearance = current_clearance(out, parts, "film")
@@ -195,6 +205,32 @@ def _with_arrows(show: str, film: Film) -> Film | None:
     return made if made.arrows.vectors or made.arcs.torques else None
 
 
+def _in_balance(film: Film, reason: Insight) -> Film:
+    """Return the film with the forces and torques on one body alone, as that feels them: that of the reason.
+
+    The same film where arrows are no forces, or the reason names no body that moves.
+    """
+    motion = film.motion
+    bodies = [body for body in reason.bodies if body in motion.bodies]
+    for name in reason.joints:
+        load = motion.drivers.get(name) or motion.forces.get(name)
+        if load is not None:
+            bodies += [action.body for action in load.actions if action.body in motion.bodies]
+    if "velocities" in film.shot.show or not bodies:
+        return film
+    made = Film(motion, film.parts, shown(film.shot, "forces,reactions"), film.folder, film.aspect)
+    own: dict[str, list[Any]] = {"vectors": [], "torques": []}
+    for key, acting in (("vectors", made.arrows.vectors), ("torques", made.arcs.torques)):
+        for each in acting:
+            if bodies[0] in each.bodies:
+                on = next((body for body in reversed(each.bodies) if body in motion.bodies), "")
+                own[key].append(each if on == bodies[0] else replace(each, value=-each.value))
+    straight = Arrows(made.poses.time, own["vectors"], made.size)
+    least = rounding(own["vectors"], made.size)
+    made.__dict__["arrows"], made.__dict__["arcs"] = straight, Arcs(made.poses.time, own["torques"], made.size, least)
+    return made if straight.vectors or made.arcs.torques else film
+
+
 def _cut_open(shot: Shot, film: Film) -> Film | None:
     """Return the same film as the shot cuts it open; None where it does not. Raises UserError for one that opens no
     piece.
@@ -213,7 +249,7 @@ def _drawing(out: Out, preset: Preset, film: Film, story: Story, known: list[str
     words = out.name.replace("_", " ").replace("-", ": ")
     said = tuple(re.split(r"(?<=[.!?])\s+(?=[A-Z0-9])", " ".join(description(out.name).split("\n\n")[0].split())))
     said = tuple(sentence for sentence in said if sentence != "SI units.")
-    line = plain(BETWEEN.join(without_slow(fact) for fact in known[1 : 1 + FACTS]))
+    line = plain(BETWEEN.join(without_slow(fact) for fact in known[1 : 1 + FACTS])).replace("N m", "N·m")
     return Drawing(
         wide=preset.width, high=preset.height, name=words[:1].upper() + words[1:], said=said,
         facts=line[:1].upper() + line[1:], strip=strip_of(film, story, preset),

@@ -44,7 +44,8 @@ AUTHORS = ("parts", "solve", "shot", "clearance")
 def command(step: str, name: str, asked: Options) -> list[str]:
     """Return the command line of a step, as in the Makefile."""
     if step in AUTHORS:
-        return [asked.python, "-m", "mechanisms", step, name]
+        words = [asked.python, "-m", "mechanisms", step, name]
+        return [*words, "--or-warn"] if step == "clearance" else words
     words = [asked.python, "-m", "render", step, name]
     if step == "plots" and asked.spectra:
         words += [f"--spectra={asked.spectra}", "--every"]

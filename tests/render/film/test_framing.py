@@ -81,7 +81,7 @@ def test_every_body_that_moves_stays_in_the_frame_over_the_whole_film_and_fills_
     assert pixels[:, 1].min() >= 0.08 + above - 2e-3
     assert pixels[:, 1].max() <= 0.92 - above + 2e-3
     left = (0.84 - 2 * above) / 0.84  # of the height, by words and a legend
-    assert (np.ptp(pixels, axis=0) / (1, left)).max() > (0.65 if orbit else 0.8)
+    assert (np.ptp(pixels, axis=0) / (1, left)).max() > (0.65 if orbit else 0.6)  # 0.8, less for a plate that is whole
 
 
 @pytest.mark.parametrize("aspect", ["16:9", "1:1", "4:5", "9:16"])

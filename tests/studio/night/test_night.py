@@ -63,7 +63,7 @@ def test_steps_and_commands_are_those_of_run_in_the_makefile():
     commands = [" ".join(command(step.name, "four_bar", asked)[3:]).replace("=", " ") for step in STEPS]
     assert [line.endswith(" --every") for line in commands] == [line.startswith("plots") for line in commands]
     commands = [line.replace("plots", "plot").removesuffix(" --every") for line in commands]
-    assert [line.replace(" --or-none", "") for line in commands] == lines
+    assert [line.replace(" --or-warn", "") for line in commands] == lines
 
 
 def test_an_aspect_is_asked_of_the_stages_by_the_name_of_its_preset():

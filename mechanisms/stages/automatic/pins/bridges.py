@@ -131,16 +131,22 @@ def bridges_over(layout: Layout, levels: Mapping[str, int]) -> list[Feature]:
                 "from every side, and there is no place for one between the bridges of "
                 f"{', '.join(bridge.name for bridge in bridges)}; move pivots apart, or shape them by hand in parts.py"
             )
-        bridges.append(min(fitting, key=_cost))
+        bridges.append(min(fitting, key=lambda beam: _cost(beam, points)))
         waiting = [pin for pin in waiting if pin not in bridges[-1].pins]
     return list(bridges)
 
 
-def _cost(bridge: Bridge) -> float:
-    """Return the length of a beam for each pivot, a little more the less it lies level."""
+HIDES = 3.0
+"""Cost of a beam that hides all that moves, beside that of its length."""
+
+
+def _cost(bridge: Bridge, moving: np.ndarray) -> float:
+    """Return the length of a beam for each pivot, more the more of ``moving`` it hides, and the less it lies level."""
     (x0, y0), (x1, y1) = bridge.ends
     length = math.hypot(x1 - x0, y1 - y0)
-    return round(length / len(bridge.pins) * (1.0 + 0.01 * abs(y1 - y0) / length), 6)
+    along, aside = _along(moving, np.array([x0, y0]), np.array([x1 - x0, y1 - y0]) / length)
+    hidden = float(((along > 0) & (along < length) & (np.abs(aside) < BEAM / 2)).mean()) if len(moving) else 0.0
+    return round(length / len(bridge.pins) * (1.0 + 0.01 * abs(y1 - y0) / length) * (1.0 + HIDES * hidden), 6)
 
 
 def _points(layout: Layout, hanging: Sequence[Pin]) -> tuple[np.ndarray, np.ndarray]:
@@ -218,7 +224,8 @@ def _has_room(bridge: Bridge, others: Sequence[Bridge], waiting: Sequence[Pin]) 
     return all(core_gaps(own, at)[0] >= BEAM + APART for at in away)
 
 
-# The solids of a bridge (rmm): two posts, a beam that is pinned to them, and shafts that hang from it.
+# The solids of a bridge (rmm): two posts, a beam that is pinned to them, and shafts that hang from it. The beam is of
+# clear glass: it stands in front of all that moves.
 
 BEAM_HEIGHT = 11.0
 DOWEL = 24.0
@@ -236,7 +243,7 @@ def bridge_solids(bridge: Bridge, plan: Plan, heights: Heights) -> None:
     hung = [pin.places["ground"] for pin in bridge.pins]
     for x, y in [*bridge.ends, *hung]:
         shape = shape.cut(placed_solid(bore(pivot.held, low, low + BEAM_HEIGHT, 0.4), x, y))
-    plan.make("ground", f"bridge_{bridge.name}", shape, "aluminium_black", 2 + len(hung))
+    plan.make("ground", f"bridge_{bridge.name}", shape, "acrylic", 2 + len(hung))
     for k, (x, y) in enumerate(bridge.ends, start=1):
         standing(f"{bridge.name}_{k}", (x, y), low - seat, plan, label="", kind="post", levels=heights.levels)
         dowel = pin(pivot.pin, DOWEL - seat, sizes.head)

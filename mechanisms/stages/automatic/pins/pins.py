@@ -196,15 +196,24 @@ def pins_at(layout: Layout, body: str, place: tuple[float, float]) -> list[Pin]:
 @kind("revolute")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
     """Return joints by their pins: those with a common place on a body are one."""
-    named = [(joint.name, {k.body.name: layout.place(k) for k in (joint.i, joint.j)}) for joint in joints]
-    return _pins(m, [*named, *_rod_ends(layout)])
+    return list(_pins(m, [*_named(joints, layout), *_rod_ends(layout)]))
+
+
+def pins_of(layout: Layout) -> list[Pin]:
+    """Return the pins of all revolute joints and rods of a layout, whether it has features or not."""
+    revolute = [joint for joint in layout.m.joints.values() if joint.kind.name == "revolute"]
+    return _pins(layout.m, [*_named(revolute, layout), *_rod_ends(layout)])
+
+
+def _named(joints: list[Joint], layout: Layout) -> list[tuple[str, dict[str, tuple[float, float]]]]:
+    return [(joint.name, {k.body.name: layout.place(k) for k in (joint.i, joint.j)}) for joint in joints]
 
 
 @kind(ROD)
 def gather_rods(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
     """Gather rods as features; their pins are those of the revolute joints, unless there are none."""
     revolute = [j for j in m.joints.values() if j.kind.pair == "pin" and not layout.apart.intersection(j.bodies)]
-    return [] if revolute else _pins(m, _rod_ends(layout))
+    return [] if revolute else list(_pins(m, _rod_ends(layout)))
 
 
 def _rod_ends(layout: Layout) -> list[tuple[str, dict[str, tuple[float, float]]]]:
@@ -216,7 +225,7 @@ def _rod_ends(layout: Layout) -> list[tuple[str, dict[str, tuple[float, float]]]
     ]
 
 
-def _pins(m: Mechanism, named: list[tuple[str, dict[str, tuple[float, float]]]]) -> list[Feature]:
+def _pins(m: Mechanism, named: list[tuple[str, dict[str, tuple[float, float]]]]) -> list[Pin]:
     """Return pins of named joints with a place on two bodies each: those with a common place are one pin."""
     ends = [at for _, at in named]
     group = list(range(len(named)))
@@ -226,7 +235,7 @@ def _pins(m: Mechanism, named: list[tuple[str, dict[str, tuple[float, float]]]])
             if group[i] != group[j] and any(_same(ends[i][body], ends[j][body]) for body in shared):
                 old, new = group[j], group[i]
                 group = [new if g == old else g for g in group]
-    pins: list[Feature] = []
+    pins: list[Pin] = []
     for g in dict.fromkeys(group):
         members = [k for k in range(len(named)) if group[k] == g]
         places = {body: place for k in members for body, place in ends[k].items()}

@@ -79,7 +79,7 @@ def _side(places: list[tuple[float, float, str, str]], right: bool, row: float, 
 
 # The assembly: parts lift apart in the order in which they are put together, get their names, and settle in.
 
-WHOLE, LIFTS, APART, SETTLED = 0.5, 1.7, 3.2, 0.5
+WHOLE, LIFTS, APART, SETTLED = 0.2, 1.7, 2.0, 0.2
 """Seconds: as a whole, coming apart (and together), apart, and as a whole again."""
 LYING, STANDING = (12.0, -6.0), (42.0, 10.0)
 """Degrees: azimuth and elevation beside those of the shot for what lies, whose layers are seen from lower down; for

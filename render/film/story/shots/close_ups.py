@@ -21,8 +21,8 @@ from shared.stage.errors import UserError
 
 # A close look along one joint with a shallow depth, while the machine moves slowly.
 
-SECONDS, MOVES = 4.4, 3.8
-"""Seconds of the shot, and of its move."""
+MOVES, LEAST, AFTER = 3.8, 2.6, 0.2
+"""Seconds of the move, those for which its caption stands at least, and those after the move."""
 LENS, WIDE = 90.0, 0.36
 """mm, and the width of what is seen, in sizes of the machine."""
 SLOWER = 0.4
@@ -47,7 +47,7 @@ def macro(scenery: Scenery) -> Shot | None:
     ramp = Ramp(
         begin if clock.repeats else max(clock.start, begin), ((move * 0.75, rate, rate), (move * 0.25, rate, 0.0))
     )
-    stands = _stands(scenery)
+    stands, whole = _stands(scenery), scenery.whole(max(move + AFTER, LEAST))
 
     def picture(s: float) -> Picture:
         time = ramp.time_at(min(s, move))
@@ -59,11 +59,11 @@ def macro(scenery: Scenery) -> Shot | None:
     text = _caption(scenery, name)
 
     def over(s: float) -> Over:
-        shown = shown_in(s, 0.5, SECONDS - 0.2)
+        shown = shown_in(s, 0.2, whole - 0.2)
         return scenery.going(ramp.time_at(s), ramp.shown_rate(s), strip=False, caption=text, caption_shown=shown)
 
-    captions = (Caption(0.5, SECONDS - 0.2, text),)
-    return Shot("macro", scenery.say("macro"), SECONDS, picture, over, ramp.time_at, captions)
+    captions = (Caption(0.2, whole - 0.2, text),)
+    return Shot("macro", scenery.say("macro"), whole, picture, over, ramp.time_at, captions)
 
 
 def _busy(scenery: Scenery) -> float:
@@ -152,8 +152,8 @@ def _caption(scenery: Scenery, name: str) -> str:
 
 # The section: the machine in motion as its shot cuts it open; the camera walks a little to the side of the cut.
 
-SECTION_SECONDS, SECTION_MOVES = 4.8, 4.0
-"""Seconds of the shot, and of its move."""
+SECTION_MOVES = 4.0
+"""Seconds of the move."""
 BEGIN, END = (-12.0, 4.0), (8.0, -2.0)
 """Azimuth and elevation (degrees) beside those of the cut film, from which its faces are seen; what is cut from the
 left is seen the other way round."""
@@ -174,6 +174,7 @@ def section(scenery: Scenery) -> Shot | None:
     clock, move = scenery.film.clock, scenery.moving(SECTION_MOVES)
     begin = clock.start if clock.repeats else max(clock.start, _busy(scenery) - clock.rate * move / 2)
     ramp = Ramp(begin, ((0.75 * move, clock.rate, clock.rate), (0.25 * move, clock.rate, 0.0)))
+    whole = scenery.whole(max(move + AFTER, LEAST))
     side, turn = _side(scenery), _turn(scenery, scenery.cut)
     first, last = (scenery.stand(turn + side * azimuth, high, strip=False) for azimuth, high in (BEGIN, END))
 
@@ -184,11 +185,11 @@ def section(scenery: Scenery) -> Shot | None:
     text = scenery.say("cut_open")
 
     def over(s: float) -> Over:
-        rate, shown = ramp.shown_rate(s), shown_in(s, 0.4, SECTION_SECONDS - 0.2)
+        rate, shown = ramp.shown_rate(s), shown_in(s, 0.2, whole - 0.2)
         return scenery.going(ramp.time_at(s), rate, strip=False, caption=text, caption_shown=shown)
 
-    captions = (Caption(0.4, SECTION_SECONDS - 0.2, text),)
-    return Shot("section", scenery.say("section"), SECTION_SECONDS, picture, over, ramp.time_at, captions)
+    captions = (Caption(0.2, whole - 0.2, text),)
+    return Shot("section", scenery.say("section"), whole, picture, over, ramp.time_at, captions)
 
 
 def _turn(scenery: Scenery, cut: Film) -> float:

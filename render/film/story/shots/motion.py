@@ -5,25 +5,42 @@ from __future__ import annotations
 import numpy as np
 
 from render.film.story.frame import Caption, Over, Picture, Shot, shown_in
-from render.film.story.ramps import Ramp, Warp, eased, into, warped
+from render.film.story.ramps import Ramp, Warp, eased, warped
 from render.film.story.scenery import Scenery, between, turned
 from shared.contract.quantity import figures
 
-# The title: name and what it is, over the first picture of what follows, dark and out of focus.
+# The title: name and what it is, over the machine, which moves from the first picture on.
 
-SECONDS, FADE = 3.0, 0.5
+SECONDS, FADE = 2.4, 0.5
 
 
 def title(scenery: Scenery, after: Shot | None) -> Shot | None:
-    """Return the title before a shot, whose first picture it shows; None where no shot follows."""
+    """Return the title before a shot; None where no shot follows."""
     if after is None:
         return None
-    first = after.picture(0.0)
+    seconds = scenery.whole(SECONDS)
+    begin, rate = _run(scenery, seconds)
+    stand = scenery.stand(strip=False)
+
+    def model(s: float) -> float:
+        return begin + rate * s
 
     def over(s: float) -> Over:
-        return Over(title=shown_in(s, -FADE, SECONDS - FADE, FADE), focus=eased((s - SECONDS + FADE) / FADE))
+        return Over(title=shown_in(s, -FADE, seconds - FADE, FADE))
 
-    return Shot("title", scenery.say("title"), SECONDS, lambda s: first, over, lambda s: after.model(0.0))
+    return Shot("title", scenery.say("title"), seconds, lambda s: scenery.picture(stand, model(s)), over, model)
+
+
+def _run(scenery: Scenery, seconds: float) -> tuple[float, float]:
+    """Return where the motion is (s) so many seconds of film before it comes to its poster, and its rate.
+
+    Title and last shot have these pictures in common. A motion whose poster is at its start goes on from there.
+    """
+    clock = scenery.film.clock
+    end = clock.moment(clock.frame_at(scenery.film.shot.poster)).time
+    if clock.repeats or end - clock.start >= clock.rate * seconds:
+        return end - clock.rate * seconds, clock.rate
+    return clock.start, min(clock.rate, (clock.end - clock.start) / seconds)
 
 
 # The machine in motion, three-quarter view: the camera swings past it, and the strip has its curves.
@@ -92,26 +109,26 @@ def _caption(scenery: Scenery) -> str:
     return scenery.say("lasts", time=f"{figures(span, 3)} s") if insight is None else scenery.sentence(insight)
 
 
-# The last shot: the machine comes to the pose of its poster and rests there, under its name.
+# The last shot: the machine runs on to the pose of its poster, under its name.
 
-MOVES, SLOWS, RESTS = 0.8, 1.2, 2.4
-"""Seconds: at the rate of the loop, slowing down, at rest."""
+MOVES = 1.6
+"""Seconds in which the camera comes from aside."""
 
 
 def last(scenery: Scenery) -> Shot:
     """Return the shot from a little aside into the three-quarter view, and to the moment of the poster."""
-    clock = scenery.film.clock
-    goes, slows = scenery.moving(MOVES), scenery.moving(SLOWS)
-    poster = clock.moment(clock.frame_at(scenery.film.shot.poster)).time
-    ramp = into(poster, -1e300 if clock.repeats else clock.start, clock.rate, goes, slows)
-    stop = goes + slows
+    clock, stop, runs = scenery.film.clock, scenery.moving(MOVES), scenery.whole(SECONDS)
+    at, rate = _run(scenery, runs)
     end = scenery.stand(strip=False)
     begin = turned(end, -14.0, 3.0, 1.1)
 
+    def model(s: float) -> float:
+        return at + rate * (s - stop) if clock.repeats else max(at + rate * (s - stop), clock.start)
+
     def picture(s: float) -> Picture:
-        return scenery.picture(between(begin, end, eased(s / stop)), ramp.time_at(min(s, stop)))
+        return scenery.picture(between(begin, end, eased(s / stop)), model(s))
 
     def over(s: float) -> Over:
         return Over(ending=shown_in(s, stop - 0.4, 1e9, 0.5))
 
-    return Shot("last", scenery.say("last"), stop + RESTS, picture, over, ramp.time_at)
+    return Shot("last", scenery.say("last"), stop + runs, picture, over, model)

@@ -9,7 +9,7 @@ import numpy as np
 from render.film.framing import project
 from render.film.story.frame import Caption, Note, Over, Picture, Shot, shown_in
 from render.film.story.ramps import Ramp, eased, into
-from render.film.story.scenery import Scenery, Stand, between
+from render.film.story.scenery import Scenery, Stand, between, turned
 from render.film.story.words import plain
 from render.insights.insight import in_words
 from shared.contract.quantity import figures
@@ -52,7 +52,8 @@ def notes(scenery: Scenery, picture: Picture) -> tuple[Note, ...]:
             continue
         way = (tip - tail) / max(float(np.hypot(*(tip - tail))), 1e-9)
         vector = film.arrows.vectors[k]
-        words = f"{plain(vector.name.partition(' of ')[2] or vector.name)}  {in_words(sizes[k], vector.unit)}"
+        name = "weight" if vector.weight else vector.name.partition(" on ")[0].partition(" of ")[2] or vector.name
+        words = f"{plain(name.partition(' on ')[0])}  {in_words(sizes[k], vector.unit)}"
         colour = SIGNALS[vector.row].dark
         out.append(Note(float(tip[0] / wide), float(tip[1] / high), float(way[0]), float(way[1]), words, colour))
     return tuple(out)
@@ -60,12 +61,14 @@ def notes(scenery: Scenery, picture: Picture) -> tuple[Note, ...]:
 
 # The reason: time slows down into an event or a peak, stops, arrows grow, and a caption says what happens there.
 
-GOES, SLOWS, GROWS, STANDS, ON = 0.9, 1.7, 0.8, 3.4, 1.3
+GOES, SLOWS, GROWS, STANDS, ON = 1.4, 1.7, 0.8, 1.8, 1.7
 """Seconds: at the rate of the loop, slowing down, arrows growing, standing still, going on."""
 GOES_AWAY = 0.3
 """Seconds in which arrows go when time goes on."""
 BEFORE, AFTER = (9.0, 3.0), (3.0, 7.0)
 """Azimuth and elevation (degrees) beside those of the shot, when it begins and when time stands still."""
+ROUND = 8.0
+"""Degrees by which the camera goes round while time stands still, where it turns at all."""
 NEARER = (0.92, 0.96, 1.0, 1.05, 1.1, 1.2, 1.35)
 """Parts of the distance at which time stands still: the first from which all arrows are in the picture."""
 EDGE = 0.03
@@ -85,14 +88,18 @@ def reason(scenery: Scenery) -> Shot | None:
     after = Ramp(ramp.time_at(stop), ((on, 0.0, clock.rate),))
     seconds = begins + on
     wide, near = _stands(scenery, ramp.time_at(stop))
+    round_it = turned(near, ROUND, 0.0, 1.0)
+    beyond = round_it if scenery.turning and _holds_arrows(scenery, round_it, ramp.time_at(stop)) else near
 
     def model(s: float) -> float:
         return ramp.time_at(s) if s < begins else after.time_at(s - begins)
 
     def picture(s: float) -> Picture:
-        way = eased(s / stop) if s < stop else 1.0
+        stand = (
+            between(wide, near, eased(s / stop)) if s < stop else between(near, beyond, (s - stop) / (seconds - stop))
+        )
         grown = min(eased((s - stop) / grows), eased((begins + GOES_AWAY - s) / GOES_AWAY)) if s >= stop else 0.0
-        return scenery.picture(between(wide, near, way), model(s), forces=True, grown=round(grown, 6), hidden="trails")
+        return scenery.picture(stand, model(s), forces=True, grown=round(grown, 6), hidden="trails")
 
     text = scenery.wishes.caption or scenery.sentence(what)
     labels = notes(scenery, picture(begins - 0.1)) if scenery.forces is not None else ()

@@ -143,7 +143,7 @@ class RunTangents:
 def run_tangents(
     run: Run, end: float, times: Sequence[float] | np.ndarray, parameters: Sequence[Parameter]
 ) -> RunTangents:
-    """Return a run until ``end`` (s), and its changes with all ``parameters`` at output ``times`` (T,) (s).
+    """Return a run until ``end`` (s), and its changes with ``parameters`` at output ``times`` (T,) (s).
 
     Raises ModelError where there is no derivative, or for events whose derivatives are unknown.
     """
@@ -359,7 +359,7 @@ class _March:
         return carried(t, matrix[:, n:], right[:, n:], begun, slight, kinematics, flow, by_time)
 
     def _flow(self, t: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, ByTime]:
-        """Return rates (T, n + k) of the run at nodes t (T,) (s), and how time alone changes those of velocities."""
+        """Return rates (T, n + k) of the run at nodes t (T,) (s), and how time alone changes v'."""
         n, k = self.n, self.k
         rates = self._rates(self.dyn, t, y)
         stencil = stencil_at(t, t, find_toggles(t, rates[:, 1, IDLE : IDLE + k]))

@@ -96,7 +96,9 @@ def refuse(first: Course) -> None:
                 "jumps on the way, are not known; those of a sweep are"
             )
         if force.kind.of_spans:
-            raise ModelError(f"{packed.name}: derivatives where cables rub on wheels ('{force.name}') are not known")
+            raise ModelError(
+                f"{packed.name}: derivatives with friction of cables on wheels ('{force.name}') are not known"
+            )
         if force.params.get("sticks"):
             raise ModelError(
                 f"{packed.name}: derivatives where joints stick ('{force.name}') are not known; give a slip_speed"

@@ -101,7 +101,7 @@ class Body(Suggesting):
     z: float | None = None
     """Place of its centre of mass along the normal of the plane (m); None: not given, and 0 where it counts."""
     looks: str = ""
-    """What its automatic parts look like, such as "piston"; empty: what its name says. No equation knows it."""
+    """Look of its automatic parts, such as "piston"; empty: what its name says. No equation knows it."""
     products: tuple[float, float] = (0.0, 0.0)
     """Products of inertia, integrals of x z dm and y z dm about the centre of mass in the body frame (kg m^2). They are
     those of a body that reaches along the normal, such as a crankshaft; 0 of one that is alike on both sides of z."""

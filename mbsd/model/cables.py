@@ -348,7 +348,8 @@ def cable(
     elastic = _elastic_given(m, what, wheels, closed, stiffness, damping, preload, restitution)
     if not taut and stiffness is None and any(wheel.friction for wheel in wheels):
         raise ModelError(
-            f"{m.name}: {what} goes slack with a jerk and rubs, which is not known to mbsd; give stiffness= as well"
+            f"{m.name}: {what} has friction on a wheel and goes slack with a jerk, which mbsd does not solve; "
+            "give stiffness= as well"
         )
     pairs = list(zip(wheels, wheels[1:] + wheels[:1] if closed else wheels[1:], strict=False))
     names = [name] if len(pairs) == 1 else [f"{name} {k}" for k in range(1, len(pairs) + 1)]

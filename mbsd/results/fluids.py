@@ -224,7 +224,7 @@ def hydraulic_view(moved: Moved, view: ForceView, force: Force) -> HydraulicView
 
 @dataclass(frozen=True, kw_only=True)
 class ValvedView(ForceView):
-    """Results of a double-acting cylinder, (T,) arrays; pressures are absolute. Chamber A is the one without a rod."""
+    """Results of a double-acting cylinder, (T,) arrays; pressures are absolute. Chamber A has no rod."""
 
     pressure_a: np.ndarray
     """Pa"""
@@ -239,7 +239,7 @@ class ValvedView(ForceView):
 
     @property
     def work(self) -> tuple[float, float]:
-        """Work of the gas in chambers A and B over the motion (J), the integrals of p dV by the trapezium rule."""
+        """Work of the gas in chambers A and B over the motion (J), integrals of p dV by the trapezium rule."""
         a, b = (
             float((0.5 * (p[1:] + p[:-1]) * np.diff(volume)).sum())
             for p, volume in ((self.pressure_a, self.volume_a), (self.pressure_b, self.volume_b))

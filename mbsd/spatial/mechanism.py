@@ -100,7 +100,7 @@ class Mechanism(Building):
         times: Sequence[float] | np.ndarray | None = None,
         tolerance: float = 1e-7,
     ) -> Simulations:
-        """Simulate n times with other numbers and starts, and keep what ``measure`` returns of each solution, by name.
+        """Simulate n times with other numbers and starts; return what ``measure`` says of each solution.
 
         ``vary``: names to arguments of :meth:`change` and their (n,) values; ``start`` and ``moving``: names to what
         :meth:`start_near` (degrees, m) and :meth:`start_moving` take. A single value is that of all. Simulations that
@@ -112,7 +112,7 @@ class Mechanism(Building):
         return simulate_many(self, measure, vary or {}, start or {}, moving or {}, named)
 
     def change(self, name: Body | Joint | Force | str, **values: Any) -> None:
-        """Change arguments of the method that added a body, joint, driver, force or event; the next solution has them.
+        """Change arguments of the method that added a body, joint, driver, force or event.
 
             m.change("spring", stiffness=250.0)
             m.change("top", mass=1.2, com=(0, 0, 0.2))

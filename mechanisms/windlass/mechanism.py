@@ -1,4 +1,4 @@
-"""A differential windlass: a crank lifts a heavy hook, and lets go of nothing.
+"""A differential windlass: a crank lifts a heavy hook.
 One drum has two radii. The rope comes off the thin one while it winds on the thick one, so each turn lifts the hook by
 half the difference of both circumferences only.
 """

@@ -59,7 +59,7 @@ class View:
 KEPT = 0.75
 """Part of what the machine may fill that it fills at least, in a picture that is wider for what stands around."""
 NEAR_MISS, AIR = 0.17, 0.98
-"""What is cut is cut by so much of its area at least: a sliver looks like a mistake. What is whole has some air."""
+"""Least part of its area by which a thing is cut, for a sliver looks like a mistake; room beside what is whole."""
 TRIES = 16
 """Parts of what stands around that are tried."""
 

@@ -137,9 +137,9 @@ def rows_of_spans(wheels: Mapping[str, tuple[SpanWheel | None, SpanWheel | None]
     return rows
 
 
-def _stepped(one: SpanWheel | None, other: SpanWheel | None) -> bool:
+def _stepped(first: SpanWheel | None, second: SpanWheel | None) -> bool:
     """Return True for two wheels of different radii about one place of a body."""
-    return one is not None and other is not None and one[:3] == other[:3] and abs(one[3]) != abs(other[3])
+    return first is not None and second is not None and first[:3] == second[:3] and abs(first[3]) != abs(second[3])
 
 
 def _ray(angle: Array | float) -> Array:

@@ -149,7 +149,7 @@ class ForceMotion(Strict, kw_only=True):
     gas: GasMotion | None = None
     """Null of what is no gas behind a piston."""
     gas_behind: GasMotion | None = None
-    """That on the other side of a double-acting piston, where its rod is."""
+    """Gas on the other side of a double-acting piston, where its rod is."""
     hydraulics: HydraulicMotion | None = None
     """Null of what is no hydraulic cylinder."""
 

@@ -24,7 +24,7 @@ REFUSED = {
     "hydraulic_cylinder": "states of forces",
     "double_acting_cylinder": "states of forces",
     "gas_cycle": "cycle of a gas",
-    "capstan": "cables rub on wheels",
+    "capstan": "friction of cables on wheels",
 }
 PLACES = ("example.i.x", "example.j.x", "example.j.y")
 OWN = {

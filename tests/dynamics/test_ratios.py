@@ -120,12 +120,12 @@ def test_saved_pickled_changed_and_many(tmp_path: Path) -> None:
 
 def test_derivatives_by_the_ratio_are_those_of_differences() -> None:
     for apart in (0.0, 0.3):
-        found = _weights(apart).sensitivities(["A.theta"], to=["r.ratio"], duration=0.4, steps=10, tolerance=1e-10)
+        derived = _weights(apart).sensitivities(["A.theta"], to=["r.ratio"], duration=0.4, steps=10, tolerance=1e-10)
         h = 1e-5
         above, below = (
             _weights(apart, -1.5 + d).simulate(0.4, steps=10, tolerance=1e-12).body("A").theta for d in (h, -h)
         )
-        assert np.allclose(found.of("A.theta", "r.ratio"), (above - below) / (2 * h), rtol=1e-5, atol=1e-7)
+        assert np.allclose(derived.of("A.theta", "r.ratio"), (above - below) / (2 * h), rtol=1e-5, atol=1e-7)
 
 
 def _geared(first: str, ratio: float) -> Mechanism:

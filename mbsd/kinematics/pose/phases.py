@@ -70,7 +70,7 @@ def take_phases(packed: Packed, q: np.ndarray, drive: np.ndarray, entries: Seque
         pose, phase = q, joint.params.get("phase")
         together, total = joint.params.get("together"), joint.params.get("total")
         if together is not None and arm is not None:
-            phase = [angle + q[3 * arm + 2] for angle in together]
+            phase = (together[0] + q[3 * arm + 2], together[1] + q[3 * arm + 2])
         if phase is not None:
             given, pose = True, _turned_to(packed, q, (i, j), phase)
         residual_and_jacobian(system, pose, drive, packed.ws)

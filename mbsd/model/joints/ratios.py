@@ -1,4 +1,4 @@
-"""Ratios: a linear relation between the coordinates of two joints, without teeth, belts or radii that must fit.
+"""Ratios: a linear relation between the coordinates of two joints, without teeth, belts or radii.
 
     q_2 = ratio q_1 + offset        q: turn of a revolute joint (rad), or travel of a prismatic joint (m)
 
@@ -106,7 +106,7 @@ class Side(NamedTuple):
     """The marker on what moves."""
     carrier: Marker
     sign: float
-    """Of the joint's coordinate, where the mover is the joint's second body; else -1."""
+    """1 where the mover is the joint's second body, else -1."""
     slides: bool
 
     @property
@@ -167,10 +167,10 @@ def _side(m: Model, name: str, joint: Joint) -> Side:
 
 def _on_one_carrier(first: Side, second: Side) -> tuple[Side, Side] | None:
     """Return both joints as motions on a body that they share; None if they share none."""
-    for one in (first, first.swapped):
-        for other in (second, second.swapped):
-            if one.carrier.body is other.carrier.body and one.mover.body is not other.mover.body:
-                return one, other
+    for near in (first, first.swapped):
+        for far in (second, second.swapped):
+            if near.carrier.body is far.carrier.body and near.mover.body is not far.mover.body:
+                return near, far
     return None
 
 
@@ -205,7 +205,7 @@ def _turns(m: Model, name: str, first: Side, second: Side, factor: float, shift:
 
 
 def _travels(m: Model, name: str, slide: Side, turn: Side, travel: float, start: float, absolute: bool) -> Joint:
-    """Connect a slide and a turn on one carrier. ``start``: travel where the turn is 0 (m), if ``absolute``."""
+    """Connect a slide and a turn on a carrier. ``start``: travel where the turn is 0 (m), if ``absolute``."""
     total = None
     if absolute:
         rail, pin = slide.carrier, turn.carrier
@@ -229,7 +229,7 @@ def _reach(m: Model) -> float:
 
 
 def _differential(m: Model, name: str, first: Side, second: Side, factor: float, shift: float | None) -> Joint:
-    """Connect joints without a common body: an idler on the first carrier turns as a body on the second does."""
+    """Connect joints without a common body: an idler on the first carrier turns as one on the second."""
     reach = _reach(m)
     idler = _idler(m, f"{name} idler", first.carrier, reach)
     if second.slides:
@@ -287,32 +287,32 @@ def refuse_contradictions(m: Model) -> None:
         return
     links: dict[_Coordinate, list[_Link]] = {}
     for joint in m.joints.values():
-        for one, other, factor in _relations(m, joint):
-            known = _known_ratio(links, one, other)
+        for first, other, factor in _relations(m, joint):
+            known = _known_ratio(links, first, other)
             if known is not None and abs(known[1] - factor) > SAME * abs(factor):
-                _refuse(m, joint, one, other, factor, known)
-            links.setdefault(one, []).append(_Link(joint.name, other, factor))
-            links.setdefault(other, []).append(_Link(joint.name, one, 1.0 / factor))
+                _refuse(m, joint, first, other, factor, known)
+            links.setdefault(first, []).append(_Link(joint.name, other, factor))
+            links.setdefault(other, []).append(_Link(joint.name, first, 1.0 / factor))
 
 
 def _refuse(
-    m: Model, joint: Joint, one: _Coordinate, other: _Coordinate, factor: float, known: tuple[list[str], float]
+    m: Model, joint: Joint, first: _Coordinate, other: _Coordinate, factor: float, known: tuple[list[str], float]
 ) -> None:
     names, factor_known = known
     already = f"{' and '.join(repr(name) for name in names)} already {'make' if len(names) > 1 else 'makes'} it"
     raise ModelError(
-        f"{m.name}: joint '{joint.name}' makes '{other[1]}' move {factor:.6g} times as much as '{one[1]}' on "
-        f"'{one[0]}', but {already} {factor_known:.6g} times: together they lock both. Leave one out, or let the "
+        f"{m.name}: joint '{joint.name}' makes '{other[1]}' move {factor:.6g} times as much as '{first[1]}' on "
+        f"'{first[0]}', but {already} {factor_known:.6g} times: together they lock both. Leave first out, or let the "
         "ratios agree"
     )
 
 
 def _known_ratio(
-    links: Mapping[_Coordinate, Sequence[_Link]], one: _Coordinate, other: _Coordinate
+    links: Mapping[_Coordinate, Sequence[_Link]], first: _Coordinate, other: _Coordinate
 ) -> tuple[list[str], float] | None:
     """Return the joints that connect two coordinates already, and their ratio; None if none do."""
-    waiting: list[tuple[_Coordinate, list[str], float]] = [(one, [], 1.0)]
-    seen = {one}
+    waiting: list[tuple[_Coordinate, list[str], float]] = [(first, [], 1.0)]
+    seen = {first}
     while waiting:
         at, names, factor = waiting.pop(0)
         if at == other:
@@ -341,7 +341,7 @@ def _relations(m: Model, joint: Joint) -> Iterator[tuple[_Coordinate, _Coordinat
 
 
 def _carriers(m: Model, marker: Marker, pair: str) -> set[str]:
-    """Return the bodies that carry a marker's body by a joint of this pair, by a pin at the marker's place."""
+    """Return the bodies that carry a marker's body by a joint of this pair, a pin at the marker's place."""
     out = set()
     for joint in m.joints.values():
         for own, other in ((joint.i, joint.j), (joint.j, joint.i)):

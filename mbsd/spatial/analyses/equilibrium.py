@@ -98,7 +98,7 @@ class _Pose:
         )  # fmt: skip
 
     def loads(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return loads (6 n,) in sizes and rad, dimensionless J (h, 6 n), and multipliers of the rows of forces."""
+        """Return loads (6 n,) in sizes and rad, dimensionless J (h, 6 n), and multipliers of rows of forces."""
         self.packed.measured(q, self.drives[0])
         turns = self.packed.ws.turn.copy()
         load, lam = loads_along(self.packed, self.laws, self.motion(q, turns))

@@ -20,7 +20,7 @@ LAWS: dict[str, Any] = {"bushing": bushing, "contact": contact, "tyre": tyre}
 
 
 def addresses_of(name: str, forces: Sequence[Force]) -> tuple[list[int], list[Callback]]:
-    """Return the address of the function of each force that has one, and what keeps those of the user there."""
+    """Return the address of the function of each force that has one, and what keeps them there."""
     addresses, callbacks = [], []
     for force in forces:
         call = force.call

@@ -34,7 +34,7 @@ def markers_given(
 def force_markers(
     m: Model, what: str, first: Fixing, second: Fixing, at: Place | None, axes: np.ndarray | None
 ) -> tuple[Marker, Marker]:
-    """Return the markers of what acts between two bodies, as :func:`markers_given` does; ``what`` names it."""
+    """Return the markers of what acts between two bodies, as :func:`markers_given`; ``what`` names it."""
     given = [part for part in (first, second) if isinstance(part, Marker)]
     if len(given) == 2:
         if at is not None or axes is not None:

@@ -1,4 +1,4 @@
-"""Reactions along a motion: multipliers of all joints, of least norm where joints repeat each other, and wrenches.
+"""Reactions along a motion: multipliers of all joints, of least norm where joints repeat each other.
 
     J^T lam = Q - M a
     J^T = Q R   =>   lam = R^-1 Q^T (Q - M a)         rows are independent

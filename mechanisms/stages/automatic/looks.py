@@ -34,7 +34,7 @@ WORDS: Mapping[str, tuple[str, ...]] = {
     "bucket": ("bucket", "scoop", "shovel"),
     "handle": ("handle", "grip", "pedal"),
 }
-"""What a body may look like, and the words of names that say so."""
+"""Looks of bodies, and the words of names that say so."""
 PLAIN = "plate"
 """The look of a body that is what it would be without a name."""
 

@@ -133,7 +133,7 @@ def _refuse_unreadable(what: str, path: Path) -> None:
 
 def holes_of(solid: cq.Solid, thickness: float) -> list[Hole]:
     """Return the round holes along z that go right through a solid which stands on z = 0 (mm)."""
-    found: dict[tuple[float, float, float], list[tuple[float, float, float]]] = {}
+    walls: dict[tuple[float, float, float], list[tuple[float, float, float]]] = {}
     for face in solid.Faces():
         if face.geomType() != "CYLINDER":
             continue
@@ -143,9 +143,9 @@ def holes_of(solid: cq.Solid, thickness: float) -> list[Hole]:
             continue
         box = face.BoundingBox()
         key = (round(place.X(), 4), round(place.Y(), 4), round(cylinder.Radius(), 4))
-        found.setdefault(key, []).append((box.zmin, box.zmax, face.Area()))
+        walls.setdefault(key, []).append((box.zmin, box.zmax, face.Area()))
     out = []
-    for (x, y, radius), faces in found.items():
+    for (x, y, radius), faces in walls.items():
         low, high = min(face[0] for face in faces), max(face[1] for face in faces)
         whole = sum(face[2] for face in faces) > 0.999 * math.tau * radius * (high - low)
         if whole and low < BESIDE and high > thickness - BESIDE:

@@ -47,7 +47,7 @@ def sound(made: Bodies) -> None:
 
 def cut(made: Bodies, m: Mechanism, steps: int = 12) -> list[tuple[str, str]]:
     """Pairs of panes with common volume at some pose of the motion."""
-    sol, found = m.sweep(steps=steps), []
+    sol, pairs = m.sweep(steps=steps), []
     for (first, a), (second, b) in combinations(panes(made).items(), 2):
         spans = [(s.shape.val().BoundingBox().zmin, s.shape.val().BoundingBox().zmax) for s in (a, b)]
         if spans[0][1] <= spans[1][0] or spans[1][1] <= spans[0][0]:
@@ -61,9 +61,9 @@ def cut(made: Bodies, m: Mechanism, steps: int = 12) -> list[tuple[str, str]]:
             ]
             common = placed[0].intersect(placed[1])
             if common.solids().size() and common.val().Volume() > 1e-6:
-                found.append((first, second))
+                pairs.append((first, second))
                 break
-    return found
+    return pairs
 
 
 @pytest.mark.parametrize("name", ["bank", "Bank 2"])

@@ -33,7 +33,7 @@ def rolling(
     m: Model, name: str, plane: Fixing, wheel: Fixing, at: Place | None = None, normal: Direction | None = None,
     centre: Place | None = None, axis: Direction | None = None, radius: float = 0.0, ring: float = 0.0,
 ) -> Joint:  # fmt: skip
-    """A wheel that rolls without slip on the plane through ``at`` (m) with this ``normal``, or of a marker.
+    """A wheel that rolls without slip on the plane through ``at`` (m) with this ``normal``, or a marker's.
 
     It is a ball of ``radius`` (m) about ``centre``, a disc of radius ``ring`` about ``axis``, or with both a ring with
     a round rim. It must touch the plane in the design pose; of a marker place and z axis are taken.

@@ -15,6 +15,7 @@ from mbsd.dynamics.integrators.dop853.loop import DOP853
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.state import TIME, WORK
+from mbsd.equations.joint_friction import SENSE
 from mbsd.results.solution import Solution
 from tools.models.rough import pusher
 from tools.models.sticking import stuck_five_bar, two_slider_cranks
@@ -222,7 +223,7 @@ def _constants(met: EventSteps) -> list[bytes]:
     arrays = [*packed.system, dynamics.inertia, dynamics.inverse, dynamics.metric, dynamics.weight, *dynamics.laws]
     arrays += [
         dynamics.loads.friction,
-        dynamics.loads.friction_number[:, :-1],
+        np.delete(dynamics.loads.friction_number, SENSE, axis=1),
         dynamics.loads.number,
         dynamics.loads.term,
     ]

@@ -33,7 +33,7 @@ from mbsd.spatial.equations.friction import (
     find_normals,
 )
 from mbsd.spatial.equations.turn import TURN, bend_turns
-from mbsd.spatial.equations.vectors import turn_vectors
+from mbsd.spatial.equations.vectors import add_turning, make_unit, turn_vectors
 
 
 class Switches(NamedTuple):
@@ -208,15 +208,6 @@ def accelerate(dyn, scratch, t, state, a, lam):
     return power
 
 
-@inlined
-def _normalise(q, c):
-    """Make q[c : c + 4] a unit; returns by how much it was none."""
-    size = math.sqrt(q[c] ** 2 + q[c + 1] ** 2 + q[c + 2] ** 2 + q[c + 3] ** 2)
-    for k in range(4):
-        q[c + k] /= size
-    return abs(size - 1.0)
-
-
 @internal
 def move(q, way):
     """Move q (3 + 7 n,) by way (3 + 6 n,): places, and small rotations in body axes; e stays a unit."""
@@ -231,7 +222,7 @@ def move(q, way):
         q[c + 4] = e1 + e0 * x + e2 * z - e3 * y
         q[c + 5] = e2 + e0 * y + e3 * x - e1 * z
         q[c + 6] = e3 + e0 * z + e1 * y - e2 * x
-        _normalise(q, c + 3)
+        make_unit(q, c + 3)
 
 
 @apart
@@ -244,7 +235,7 @@ def project(dyn, scratch, t, state, passes):
     nu = ws.right[1]
     largest = 0.0
     for b in range(1, dyn.system.mass.shape[0]):
-        largest = max(largest, _normalise(state[0], 7 * b - 1))
+        largest = max(largest, make_unit(state[0], 7 * b - 1))
     scratch.report[1] = largest
     scratch.report[2] = 0.0
     if env.rows.shape[0] == 0:
@@ -286,15 +277,6 @@ def project(dyn, scratch, t, state, passes):
             scratch.report[1] = max(scratch.report[1], largest)
 
 
-@inlined
-def _spin(e0, e1, e2, e3, x, y, z, out, c):
-    """Add e (0, w) / 2 to out[c : c + 4]."""
-    out[c] -= 0.5 * (e1 * x + e2 * y + e3 * z)
-    out[c + 1] += 0.5 * (e0 * x + e2 * z - e3 * y)
-    out[c + 2] += 0.5 * (e0 * y + e3 * x - e1 * z)
-    out[c + 3] += 0.5 * (e0 * z + e1 * y - e2 * x)
-
-
 @internal
 def rates(dyn, q, v, out):
     """See formulation.py of the plane."""
@@ -305,7 +287,7 @@ def rates(dyn, q, v, out):
             out[c + k] = v[d + k]
         for k in range(3, 7):
             out[c + k] = 0.0
-        _spin(q[c + 3], q[c + 4], q[c + 5], q[c + 6], v[d + 3], v[d + 4], v[d + 5], out, c + 3)
+        add_turning(q[c + 3], q[c + 4], q[c + 5], q[c + 6], v[d + 3], v[d + 4], v[d + 5], out, c + 3)
 
 
 @internal
@@ -316,7 +298,7 @@ def bends(dyn, state, dy, out):
         c = 7 * b - 1
         d = 6 * b
         w = state[1]
-        _spin(dy[0, c], dy[0, c + 1], dy[0, c + 2], dy[0, c + 3], w[d], w[d + 1], w[d + 2], out, c)
+        add_turning(dy[0, c], dy[0, c + 1], dy[0, c + 2], dy[0, c + 3], w[d], w[d + 1], w[d + 2], out, c)
 
 
 @internal

@@ -11,15 +11,15 @@ from __future__ import annotations
 
 import math
 
+from mbsd.compiling.jit import internal
 from mbsd.spatial.equations.calls import NUMBERS, law, to_frame, to_world
 
 SMALL = 1e-4
 
 
-@law
-def bushing(t, inputs, outputs):
-    """Put out wrenches of a bushing; numbers: K (36), C (36) by rows."""
-    dx, dy, dz = to_frame(inputs, 3, inputs[7] - inputs[0], inputs[8] - inputs[1], inputs[9] - inputs[2])
+@internal
+def _rotation_vector(inputs):
+    """Return phi in the axes of i, and its length (rad)."""
     a0 = inputs[3]
     a1 = inputs[4]
     a2 = inputs[5]
@@ -40,6 +40,14 @@ def bushing(t, inputs, outputs):
     px *= scale
     py *= scale
     pz *= scale
+    return px, py, pz, angle
+
+
+@law
+def bushing(t, inputs, outputs):
+    """Put out wrenches of a bushing; numbers: K (36), C (36) by rows."""
+    dx, dy, dz = to_frame(inputs, 3, inputs[7] - inputs[0], inputs[8] - inputs[1], inputs[9] - inputs[2])
+    px, py, pz, angle = _rotation_vector(inputs)
     if angle < SMALL:
         c = 1.0 / 12.0 + angle * angle / 720.0
     else:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from mbsd.compiling.jit import inlined, internal
 
 
@@ -17,6 +19,24 @@ def cross(a, b, out):
 def dot(a, b):
     """Return a . b of vectors (3,)."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@inlined
+def make_unit(q, c):
+    """Make Euler parameters q[c : c + 4] a unit; returns by how much they were none."""
+    size = math.sqrt(q[c] ** 2 + q[c + 1] ** 2 + q[c + 2] ** 2 + q[c + 3] ** 2)
+    for k in range(4):
+        q[c + k] /= size
+    return abs(size - 1.0)
+
+
+@inlined
+def add_turning(e0, e1, e2, e3, x, y, z, out, c):
+    """Add e (0, w) / 2 to out[c : c + 4], of w in body axes."""
+    out[c] -= 0.5 * (e1 * x + e2 * y + e3 * z)
+    out[c + 1] += 0.5 * (e0 * x + e2 * z - e3 * y)
+    out[c + 2] += 0.5 * (e0 * y + e3 * x - e1 * z)
+    out[c + 3] += 0.5 * (e0 * z + e1 * y - e2 * x)
 
 
 @inlined

@@ -12,7 +12,6 @@ of the size of a step's error.
 
 from __future__ import annotations
 
-import math
 from typing import Any, NamedTuple
 
 from mbsd.compiling.jit import apart, internal, kernel
@@ -26,6 +25,7 @@ from mbsd.spatial.dynamics.tree.places import at_centre, place_tree
 from mbsd.spatial.dynamics.tree.rows import answer_rows, factor_rows, hold_rows, measure_rates, renew_rows
 from mbsd.spatial.equations.evaluation import evaluate_gamma, evaluate_nu, evaluate_rows
 from mbsd.spatial.equations.forces import apply_forces
+from mbsd.spatial.equations.vectors import add_turning, make_unit
 
 LIMIT = 0.0025
 """Square of the part of a row that must be its own among those in use."""
@@ -104,25 +104,6 @@ def accelerate(dyn, scratch, t, state, a, lam):
 
 
 @internal
-def _normalise(q, c):
-    """Make q[c : c + 4] a unit; returns by how much it was none."""
-    size = math.sqrt(q[c] ** 2 + q[c + 1] ** 2 + q[c + 2] ** 2 + q[c + 3] ** 2)
-    for k in range(4):
-        q[c + k] /= size
-    return abs(size - 1.0)
-
-
-@internal
-def _turn(q, c, x, y, z, out):
-    """Fill out[c : c + 4] with e (0, (x, y, z)) / 2 of Euler parameters e = q[c : c + 4]."""
-    e0, e1, e2, e3 = q[c], q[c + 1], q[c + 2], q[c + 3]
-    out[c] = -0.5 * (e1 * x + e2 * y + e3 * z)
-    out[c + 1] = 0.5 * (e0 * x + e2 * z - e3 * y)
-    out[c + 2] = 0.5 * (e0 * y + e3 * x - e1 * z)
-    out[c + 3] = 0.5 * (e0 * z + e1 * y - e2 * x)
-
-
-@internal
 def rates(dyn, q, v, out):
     """See formulation.py of the plane."""
     index = dyn.tree.index
@@ -134,7 +115,11 @@ def rates(dyn, q, v, out):
         for k in range(single):
             out[c + k] = v[d + k]
         if kind <= SPHERICAL:
-            _turn(q, c + single, v[d + single], v[d + single + 1], v[d + single + 2], out)
+            c += single
+            d += single
+            for k in range(4):
+                out[c + k] = 0.0
+            add_turning(q[c], q[c + 1], q[c + 2], q[c + 3], v[d], v[d + 1], v[d + 2], out, c)
 
 
 @internal
@@ -153,7 +138,7 @@ def _normalise_all(dyn, q):
     for b in range(1, index.shape[0]):
         if index[b, KIND] <= SPHERICAL:
             c = index[b, FIRST_Q] + (3 if index[b, KIND] == FREE else 0)
-            largest = max(largest, _normalise(q, c))
+            largest = max(largest, make_unit(q, c))
     return largest
 
 

@@ -15,7 +15,7 @@ from shared.contract import AnyMotion
 from shared.contract.quantity import figures, live, written
 from shared.contract.shot import Shot
 from shared.contract.signals import SIGNALS, rgb
-from shared.contract.space import ForceMotion3
+from shared.contract.space import ForceMotion3, columns
 
 # Arrows of a film: how long each is, and its line in the legend. One scale for the whole clip and for each unit.
 
@@ -260,7 +260,10 @@ def number(motion: AnyMotion, shot: Shot) -> Callable[[float], str]:
 
         return speed
     load = motion.drivers.get(name) or motion.forces[name]
-    effort = load.rows[0].effort if isinstance(load, ForceMotion3) else load.effort
+    if isinstance(load, ForceMotion3):
+        effort = load.rows[0].effort if load.rows else np.linalg.norm(columns(load, "fx", "fy", "fz"), axis=1)
+    else:
+        effort = load.effort
     efforts = np.asarray(effort if effort is not None else np.zeros(len(time)), float)[:, None]
     write = live(efforts[:, 0].tolist(), load.effort_unit, FIGURES)
     return lambda t: f"{name}  {write(float(at_time(time, efforts, t)[0]))}"

@@ -212,7 +212,7 @@ class Coil:
 def coils(motion: Motion3, size: float) -> Iterator[Coil]:
     """Yield the springs of a motion in space."""
     for name, force in motion.forces.items():
-        if force.kind != "spring":
+        if force.look != "coil":
             continue
         least, most = min(force.rows[0].value), max(force.rows[0].value)
         if least > 0.0:

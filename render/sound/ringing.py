@@ -43,6 +43,7 @@ _FAMILIES = {
     "concrete": (28e9, 0.02),
     "asphalt": (5e9, 0.2),
     "glass": (65e9, 0.004),
+    "acrylic": (3.2e9, 0.06),
     "paper": (3e9, 0.1),
     "sand": (0.1e9, 0.4),
     "rubber": (0.02e9, 0.25),

@@ -10,18 +10,21 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Literal
 
 import msgspec
-import numpy as np
-from numpy.typing import NDArray
 
 from shared.contract.base import UNITS, NonNegative, Positive, Provenance, Series, Strict
-from shared.contract.loads import EffortUnit, ValueUnit
+from shared.contract.loads import EffortUnit, Look, ValueUnit
 from shared.contract.motion import Colour, Diagnostics, Energy, EventMark
 from shared.stage.errors import UserError
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
 type Vector3 = tuple[float, float, float]
 type Quaternion = tuple[float, float, float, float]
 """(w, x, y, z)"""
@@ -145,7 +148,16 @@ class ForceMotion3(Strict, kw_only=True):
     markers: tuple[Marker3, Marker3]
     unit: ValueUnit
     effort_unit: EffortUnit
-    rows: Annotated[list[Row3], msgspec.Meta(min_length=1)]
+    look: Look = ""
+    rows: list[Row3]
+    """Empty of forces that are functions of frames."""
+    fx: Series | None = None
+    """fx, fy, fz (N), mx, my, mz (N m) on the second body, world axes; null of forces with rows."""
+    fy: Series | None = None
+    fz: Series | None = None
+    mx: Series | None = None
+    my: Series | None = None
+    mz: Series | None = None
     power: Series
 
 
@@ -193,11 +205,15 @@ class Motion3(Strict, kw_only=True):
 
 def columns(struct: msgspec.Struct, *names: str) -> Array:
     """Return the series of these names by column (T, n)."""
+    import numpy as np
+
     return np.stack([np.asarray(getattr(struct, name), float) for name in names], axis=1)
 
 
 def refuse_unsound_space(motion: Motion3, path: Path | str) -> None:
     """Raise UserError for quaternions and axes that are no units, and quaternions whose signs jump."""
+    import numpy as np
+
     for name, body in motion.bodies.items():
         q = body.quaternion
         _refuse_not_unit(q, f"{path}: bodies.{name}: the quaternion (qw, qx, qy, qz)")
@@ -229,6 +245,8 @@ def _with_markers(motion: Motion3) -> Iterator[tuple[str, JointMotion3 | ForceMo
 
 
 def _refuse_not_unit(vectors: Array, what: str) -> None:
+    import numpy as np
+
     lengths = np.linalg.norm(vectors, axis=1)
     worst = int(np.argmax(np.abs(lengths - 1.0)))
     if not abs(lengths[worst] - 1.0) <= UNIT_TOLERANCE:

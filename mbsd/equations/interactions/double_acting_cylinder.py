@@ -15,14 +15,18 @@ from mbsd.equations.interactions.law import BODY_X, BODY_Y, FX, FY, OWN, OWN_STA
 VALVE_Y, VALVE_AT: the valve's travel is their sum with the place of its centre of mass in the axes of marker i."""
 LITTLE = 1e-3
 """Part of its dead volume that a chamber keeps at least while a step is tried."""
+EDGE = 0.02
+"""Part of its width, or of its opening, over which a port begins to open: its edge is round."""
 SMOOTH = 1e-3
 """Part of the higher pressure below which the drop makes a laminar flow."""
 
 
 @internal
-def opened(travel, lap, port):
+def opened(travel, lap, port, width):
     """Return how far a port is open (m) at a travel of the valve (m)."""
-    return min(max(travel - lap, 0.0), port)
+    edge = EDGE * min(port, width)
+    part = min(max((travel - lap) / edge, 0.0), 1.0)
+    return min(max(travel - lap, 0.0), port) * part * part * (3.0 - 2.0 * part)
 
 
 @internal
@@ -48,8 +52,8 @@ def flow(above, below, exponent):
 @internal
 def filled(numbers, pressure, travel):
     """Return p q (W) by R T of gas that flows into a chamber under ``pressure`` (Pa): p' = n / V (it - p V')."""
-    inlet = opened(travel, numbers[LAP], numbers[PORT])
-    outlet = opened(-travel, numbers[EXHAUST_LAP], numbers[PORT])
+    inlet = opened(travel, numbers[LAP], numbers[PORT], numbers[WIDTH])
+    outlet = opened(-travel, numbers[EXHAUST_LAP], numbers[PORT], numbers[WIDTH])
     into = inlet * flow(numbers[SUPPLY], pressure, numbers[EXPONENT])
     into += outlet * flow(numbers[EXHAUST], pressure, numbers[EXPONENT])
     return numbers[CONDUCTANCE] * numbers[WIDTH] * into

@@ -40,7 +40,7 @@ def prepare(m: Model, start: float = 0.0, end: float = 1.0) -> Prepared:
     packed.settle_laws(start, end)
     same_fields: Any = packed
     refuse_bad_laws(same_fields, start, end)
-    rolling = [joint.name for joint in m.joints.values() if joint.kind.name == "rolling"]
+    rolling = [joint.name for joint in m.joints.values() if joint.kind.holds_rates]
     if rolling:
         raise ModelError(
             f"{m.name}: '{rolling[0]}' rolls, so no value of the drivers says where it is. Call simulate; a sweep "

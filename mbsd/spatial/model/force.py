@@ -61,6 +61,8 @@ class ForceKind(ByName):
     """Function of a force: its own function with its frames."""
     friction_of: Callable[[Force], list[float]] | None = None
     """Function of a force of one row that is friction: its numbers (equations/friction.py)."""
+    look: str = ""
+    """Look in pictures, as forces of data.json have it; empty: not drawn."""
     add: Callable[..., Any] | None = field(default=None, init=False, compare=False)
     """The function ``add(m, name, ...)`` that adds one of this kind, with its arguments checked."""
 

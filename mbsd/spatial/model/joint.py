@@ -32,6 +32,12 @@ class JointKind(ByName):
     """True if marker j turns about the z axis of marker i, and this turn can be driven."""
     slides: bool = False
     """True if marker j moves along the z axis of marker i, and this slide can be driven."""
+    has_friction: bool = False
+    """True if friction is known from its reaction, of a pin or a guide."""
+    holds_rates: bool = False
+    """True if rows hold rates and no place, so that no value of the drivers says where it is."""
+    coupling: int = 0
+    """Number of its last rows that couple its turn and slide."""
     driven: bool = False
     unit: str = ""
     """Unit of what a driver imposes: m or rad."""

@@ -146,7 +146,7 @@ class TreeCoordinates:
         """Return the rows of a joint that the tree does not hold."""
         if id(joint) not in self._held:
             return joint.rows
-        return joint.rows[-1:] if joint.kind.name == "screw" else []
+        return joint.rows[len(joint.rows) - joint.kind.coupling :]
 
     def _rows_of(self, joint: Joint) -> list[Row]:
         """Return them without the terms that are coordinates."""

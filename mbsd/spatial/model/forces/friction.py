@@ -54,7 +54,7 @@ def friction(
     """
     what = f"{m.name}: force '{name}'"
     known = own_joint(m, joint, what)
-    if known.kind.name not in ("revolute", "prismatic"):
+    if not known.kind.has_friction:
         raise ModelError(f"{what}: '{known.name}' is {known.kind.name}; friction needs a revolute or prismatic joint")
     static = coefficient if static is None else static
     not_negative(

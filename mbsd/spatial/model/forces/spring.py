@@ -18,6 +18,7 @@ SPRING = register_force(
         example=lambda m, i, j: m.spring(
             "example", i, j, start=(0.1, 0.2, 0.3), end=(-0.2, 0.5, 0.8), stiffness=30.0, damping=2.0, length=0.2
         ),
+        look="coil",
     )
 )
 

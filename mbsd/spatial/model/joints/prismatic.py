@@ -23,6 +23,7 @@ PRISMATIC = register_joint(
         ],
         example=lambda m, i, j: m.prismatic("example", i, j, at=(0.1, 0.2, 0.3), axis=(1, 2, -1)),
         slides=True,
+        has_friction=True,
     )
 )
 

@@ -19,6 +19,7 @@ REVOLUTE = register_joint(
         lambda joint: [point(joint.i, joint.j), *parallel_axes(joint.i, joint.j)],
         example=lambda m, i, j: m.revolute("example", i, j, at=(0.1, 0.2, 0.3), axis=(1, 2, -1)),
         turns=True,
+        has_friction=True,
     )
 )
 

@@ -24,6 +24,7 @@ ROLLING = register_joint(
             "example", i, j, at=(0.1, 0.2, 0.3), normal=(0, 0, 1), centre=(0.2, 0.3, 0.6), axis=(0, 1, 0), ring=0.2,
             radius=0.1,
         ),
+        holds_rates=True,
     )
 )  # fmt: skip
 

@@ -31,6 +31,7 @@ SCREW = register_joint(
         example=lambda m, i, j: m.screw("example", i, j, at=(0.1, 0.2, 0.3), axis=(1, 2, -1), lead=0.3),
         turns=True,
         slides=True,
+        coupling=1,
     )
 )
 

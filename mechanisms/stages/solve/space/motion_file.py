@@ -127,16 +127,21 @@ def _driver(solution: Solution, driver: Joint) -> space.DriverMotion3:
 
 
 def _force(solution: Solution, force: Force) -> space.ForceMotion3:
-    view = solution.force(force.name)
-    angular = force.pushes[0].row.unit == "rad"
-    rows = zip(view.values.T, view.rates.T, view.efforts.T, strict=True)
+    view: Any = solution.force(force.name)
+    angular = bool(force.pushes) and force.pushes[0].row.unit == "rad"
+    rows = zip(view.values.T, view.rates.T, view.efforts.T, strict=True) if force.pushes else ()
+    wrench = (
+        {} if force.pushes else _columns(("fx", "fy", "fz"), view.force) | _columns(("mx", "my", "mz"), view.moment)
+    )
     return space.ForceMotion3(
         kind=force.kind.name,
         bodies=(force.i.body.name, force.j.body.name),
         markers=(_marker(force.i), _marker(force.j)),
         unit="rad" if angular else "m",
         effort_unit="N m" if angular else "N",
+        look=force.kind.look,  # pyright: ignore[reportArgumentType]
         rows=[space.Row3(value=v.tolist(), rate=r.tolist(), effort=(e + 0.0).tolist()) for v, r, e in rows],
+        **wrench,
         power=(view.power + 0.0).tolist(),
     )
 

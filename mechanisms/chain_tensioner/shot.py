@@ -1,0 +1,5 @@
+"""The chain is filmed in the studio."""
+
+from shared.shot import Shot
+
+shot = Shot(look="studio")

@@ -108,6 +108,8 @@ def of_law(law: Motion, first: float, last: float) -> LawError:
 
 
 DRIVEN, DRIVEN_REDUNDANT = 1e-11, 1e-9
+VALVED = 300.0
+"""Times the bounds where ports open and close: the flow of gas bends sharply there, in a stiff motion."""
 SLACK = 1000.0
 NUDGE = 1e-6
 USELESS = 1e-3
@@ -283,12 +285,17 @@ def _whose(first: Solution, key: str, column: int) -> str:
     return list(first.mechanism.drivers)[column] if key == "efforts" else ("kinetic", "potential")[column]
 
 
+def valves(sol: Solution) -> float:
+    """Return times the usual bounds that hold for a mechanism with or without valves of gas."""
+    return VALVED if any(force.kind.valved for force in sol.mechanism.forces.values()) else 1.0
+
+
 def driven_limits(
     first: Solution, rows: np.ndarray, size: dict[str, float], loosened: float, laws: LawError
 ) -> dict[str, np.ndarray]:
     """Bounds of a driven motion; ``loosened`` is added to DRIVEN, as the tolerance of an integrator."""
     margin = np.clip(first.singularity_margin[rows], 1e-12, None)
-    e = ((DRIVEN_REDUNDANT if first.mobility.redundant_rows else DRIVEN) + loosened) / margin
+    e = ((DRIVEN_REDUNDANT if first.mobility.redundant_rows else DRIVEN * valves(first)) + loosened) / margin
     rate, bend = laws.slope * size["q"] / size["v"] / margin, laws.bend * size["q"] / size["a"] / margin
     by_laws = {"v": rate, "energies": 2 * rate, "a": bend + 2 * rate}
     by_laws["reactions"] = by_laws["efforts"] = by_laws["a"] / margin

@@ -10,7 +10,7 @@ import numpy as np
 from mbsd import Mechanism
 from mbsd.base.errors import MechanismError, SimulationError
 from mbsd.results.solution import Solution
-from tools.hunt.agreement import NUDGE, SAME, SLACK, Growth, Verdict, Words, compare_free
+from tools.hunt.agreement import NUDGE, SAME, SLACK, Growth, Verdict, Words, compare_free, valves
 from tools.hunt.checks import closed, expected_refusal, finite
 from tools.hunt.outcome import AGREED, REFUSED, UNCLEAR, WRONG, Outcome
 from tools.hunt.sweeping import HEALTHY
@@ -127,7 +127,7 @@ class Free:
         """Outcome of a comparison with the first solution."""
         assert self.first is not None
         assert self.growth is not None
-        return compare_free(self.first, other, self.growth, TOLERANCE + tolerance, words, slack)
+        return compare_free(self.first, other, self.growth, TOLERANCE + tolerance, words, slack * valves(self.first))
 
     def less_sure(self) -> bool:
         """Measure the growth of errors by further nudges; False if there is nothing new to learn."""

@@ -113,8 +113,9 @@ def _check(model: str, force: Force, times: np.ndarray, x: np.ndarray, states: n
 def _example(m, i, j):
     body = m.body("valve of example", mass=0.1, inertia=0.1)
     m.prismatic("seat of example", i.body.at(0.1, 0.4), body.origin)
+    start = i.body.at(i.x - 5.0 * math.cos(i.angle), i.y - 5.0 * math.sin(i.angle), i.angle)
     m.double_acting_cylinder(
-        "example", i, j, bore=0.1, stroke=9.0, valve="seat of example", supply=8e4, width=0.02, lap=0.01, port=0.3,
+        "example", start, j, bore=0.1, stroke=9.0, valve="seat of example", supply=8e4, width=0.02, lap=0.01, port=0.3,
         rod=0.05, exhaust=1e4, outside=0.0, dead_a=0.5, dead_b=0.5, pressure_a=3e4, pressure_b=2e4,
     )  # fmt: skip
 

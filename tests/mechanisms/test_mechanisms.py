@@ -14,6 +14,7 @@ from mechanisms.stages.parts.meshes import VOLUME_TOLERANCE
 from mechanisms.stages.parts_files import read_mesh
 from mechanisms.stages.solve.masses import bare_solution
 from render import glb
+from render.film.composing import KEPT
 from render.film.inputs import read_film
 from render.frames.story.telling import telling_of
 from render.presets import PRESETS, WIDE
@@ -208,12 +209,13 @@ def test_solving_anew_gives_the_same_bytes(products: tuple[str, Path], out: Out,
 def test_it_fills_wide_and_tall_pictures_and_its_words_have_room(out: Out) -> None:
     """The mechanism fills four fifths of the width or height, and nothing written overlaps.
 
+    Where plate and stand are whole it may fill three quarters of that.
     It is measured on coarse solids, springs and belts over the film; with titles and all arrows at once, too, nothing
     that is written overlaps or leaves the picture.
     """
     for aspect in (WIDE, "9:16"):
         shape = PRESETS["draft"].framed(aspect).aspect
-        assert filled(read_film(out, "", shape)) >= 0.8 - 5e-3, aspect
+        assert filled(read_film(out, "", shape)) >= KEPT * 0.8 - 5e-3, aspect
         written = boxes(read_film(out, "velocities,accelerations,forces,reactions,title", shape))
         assert len(written) >= 2
         refuse_overlaps(written)

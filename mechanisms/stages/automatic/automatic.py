@@ -326,6 +326,7 @@ class Automatic:
 
         Bodies that leave no order of layers are of glass; all are where that does not help. ``made.schematic`` says so.
         """
+        looks_of(self.m)  # an unknown look is an error, and no reason for glass
         first: UserError | None = None
         before = set(self._glass)
         while True:

@@ -85,15 +85,23 @@ def test_mechanism_alone_reaches_the_film(project: Project, capsys: pytest.Captu
 
 
 def test_motion_goes_on_where_there_are_no_parts(project: Project, capsys: pytest.CaptureFixture[str]) -> None:
-    """Where layers are refused, ``parts`` says so and ends; what needs no parts goes on with estimated masses."""
-    (project.folder / "mechanism.py").write_text(HANDS)
-    with pytest.raises(UserError, match="arm: no order of layers lets hand0, hand1 and hand2 pass"):
+    """Where nobody knows a look, ``parts`` says so and ends; what needs no parts goes on with estimated masses."""
+    (project.folder / "mechanism.py").write_text(ROCKET)
+    with pytest.raises(UserError, match="arm: body 'flag' looks like 'rocket'; there is: "):
         project.run()
     parts_stage.run_or_none("arm")
     solve_stage.run("arm")
     said = capsys.readouterr()
     assert "until then there are none" in said.out + said.err
     assert "masses are estimated" in said.out + said.err
+
+
+def test_bodies_that_cannot_pass_are_panes_of_glass(project: Project) -> None:
+    (project.folder / "mechanism.py").write_text(HANDS)
+    project.run()
+    parts = read_parts(Out("arm").parts)
+    assert parts.schematic.endswith("hand0, hand1 and hand2 cannot pass each other in layers")
+    assert {"hand0", "hand1", "hand2"} <= parts.bodies.keys()
 
 
 def test_a_short_parts_file_changes_what_it_likes(project: Project) -> None:
@@ -143,6 +151,11 @@ def build(p: Params) -> Mechanism:
     m.drive_angle("motor", arm, constant_rate(1.0))
     return m
 """
+ROCKET = ARM.replace(
+    "    m.drive_angle",
+    '    flag = m.body("flag", mass=0.1, inertia=1e-5, looks="rocket")\n'
+    '    m.revolute("B", arm.end, flag.origin)\n    m.drive_angle("wind", flag, constant_rate(2.0))\n    m.drive_angle',
+)
 HANDS = """
 from dataclasses import dataclass
 

@@ -15,7 +15,7 @@ from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.shafts.along import Along
 from mechanisms.stages.automatic.shafts.bodies import KNUCKLE_EYE, carrier, flange, knuckle_eyes, middle
 from mechanisms.stages.automatic.shafts.shaft_solids import Load, balanced_webs, loads, shaft_solid
-from mechanisms.stages.parts.bodies import described_body
+from mechanisms.stages.parts.bodies import Measured, described_body
 from mechanisms.stages.parts.meshes import combined, mass_of
 from mechanisms.stages.solve.masses import give_masses
 from shared.contract import BodyParts, Mass, Parts, Provenance
@@ -297,7 +297,10 @@ def test_masses_without_places_have_none() -> None:
     assert combined([plain, mass_of(shape.val(), 1000.0, along=True)]).z is None
     files: dict[str, bytes] = {}
     assert described_body("arm", "bar", [Solid("bar", shape, "steel", 0)], files, None).mass.z is None
-    assert described_body("arm", "bar", [Solid("bar", shape, "steel", 0)], files, None, along=True).mass.z is not None
+    assert (
+        described_body("arm", "bar", [Solid("bar", shape, "steel", 0)], files, None, Measured(along=True)).mass.z
+        is not None
+    )
 
 
 def test_the_frame_feels_the_masses_of_the_parts() -> None:

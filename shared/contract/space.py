@@ -227,6 +227,9 @@ def refuse_unsound_space(motion: Motion3, path: Path | str) -> None:
         moments = np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
         if moments[0] < -UNIT_TOLERANCE * max(abs(moments)):
             raise UserError(f"{path}: bodies.{name}.inertia has a negative principal moment ({moments[0]:.4g} kg m^2)")
+    for name, force in motion.forces.items():
+        if not force.rows and None in (force.fx, force.fy, force.fz, force.mx, force.my, force.mz):
+            raise UserError(f"{path}: forces.{name}.rows is empty, and there is no wrench (fx to mz) in its place")
     for name, joint in motion.joints.items():
         _refuse_not_unit(columns(joint, "ux", "uy", "uz"), f"{path}: joints.{name}: the axis (ux, uy, uz)")
     for field, element in _with_markers(motion):

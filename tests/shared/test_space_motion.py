@@ -116,3 +116,14 @@ def test_a_file_that_is_cut_off_is_not_taken_for_one(tmp_path: Path) -> None:
     path.write_bytes(CONTENT[: len(CONTENT) // 2])
     with pytest.raises(UserError, match=r"not a whole JSON file"):
         contract.read_any_motion(path)
+
+
+def test_a_force_at_frames_has_its_wrench_in_place_of_rows() -> None:
+    m = Mechanism("mount", gravity=(0, 0, -9.81))
+    load = m.body("load", 2.0, com=(0, 0, 0.1), inertia=(0.5, 0.6, 0.7))
+    m.bushing("bush", m.ground, load, [4e4, 4e4, 9e4, 50, 50, 50], [40] * 6, at=(0, 0, 0), axis=(0, 0, 1))
+    solution = m.simulate(duration=0.02, steps=4)
+    bush = to_motion3(solution, {"load": "#0b62a8"}, {}, {"load": "mechanism"}).forces["bush"]
+    assert bush.rows == []
+    assert bush.fz == pytest.approx(solution.force("bush").force[:, 2])
+    assert bush.mx == pytest.approx(solution.force("bush").moment[:, 0])

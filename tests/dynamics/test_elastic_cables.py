@@ -54,7 +54,7 @@ def test_a_slack_rope_tightens_and_slackens_without_a_jerk() -> None:
     def stretch(t: float) -> float:
         return G / w**2 * (1 - math.cos(w * t)) + speed / w * math.sin(w * t)
 
-    taut = brentq(stretch, math.pi / w, 2 * math.pi / w, xtol=1e-15)
+    taut = float(brentq(stretch, math.pi / w, 2 * math.pi / w, xtol=1e-15))  # pyright: ignore[reportArgumentType]
     own = np.where(
         sol.t < begin,
         -1 - G * sol.t**2 / 2,

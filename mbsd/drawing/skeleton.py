@@ -28,8 +28,7 @@ from mbsd.drawing.symbols.wheels import rim_of, ring_gear
 from mbsd.model.body import Marker
 from mbsd.model.cables import seen_span
 from mbsd.model.joint import Joint
-from mbsd.model.joints.ratios import helper_bodies
-from mbsd.model.mechanism import Model
+from mbsd.model.mechanism import Model, hidden_bodies
 from mbsd.pictures import Picture
 
 if TYPE_CHECKING:
@@ -75,9 +74,9 @@ def draw(m: Model, pose: Pose, ax: Axes | None, frames: bool, names: bool) -> Pi
     return picture
 
 
-def _without_helpers(m: Model) -> Model:
-    """Return the model without the bodies that ratios have added, and their joints; itself if it has none."""
-    hidden = helper_bodies(m)
+def _without_hidden(m: Model) -> Model:
+    """Return the model without its hidden bodies and their joints; itself if it has none."""
+    hidden = hidden_bodies(m)
     if not hidden:
         return m
     out = copy.copy(m)
@@ -93,7 +92,7 @@ def _without_helpers(m: Model) -> Model:
 
 def measure(m: Model, pose: Pose) -> tuple[np.ndarray, np.ndarray, float]:
     """Return lowest and highest x, y (m) of all that is drawn, and the unit of the symbols (m)."""
-    m = _without_helpers(m)
+    m = _without_hidden(m)
     points = {name: _points(m, pose, name) for name in m.bodies}
     wide = [reach(joint, pose) for joint in m.joints.values() if not pose.gone(joint.name)]
     loads = [force_reach(force, pose, list(m.joints.values())) for force in m.forces.values()]
@@ -107,7 +106,7 @@ def measure(m: Model, pose: Pose) -> tuple[np.ndarray, np.ndarray, float]:
 
 def measure_all(m: Model, poses: Sequence[Pose]) -> tuple[np.ndarray, np.ndarray, float]:
     """Return the same over several poses, in symbols of one size."""
-    m = _without_helpers(m)
+    m = _without_hidden(m)
     lows, highs, _ = zip(*(measure(m, pose) for pose in poses), strict=True)
     low, high = np.min(lows, axis=0), np.max(highs, axis=0)
     lengths = [{name: _points(m, pose, name) for name in m.bodies} for pose in poses]
@@ -126,7 +125,7 @@ def draw_on(
 
     ``colours``: by body. ``sides``: where ground's signs go, by joint; by default where there is room in this pose.
     """
-    m = _without_helpers(m)
+    m = _without_hidden(m)
     colours = {name: colour for name, colour in colours.items() if name in m.bodies}
     points, unit = {name: _points(m, pose, name) for name in m.bodies}, canvas.unit
     for name in colours:
@@ -158,7 +157,7 @@ def draw_on(
 
 def steady_sides(m: Model, poses: Sequence[Pose], unit: float) -> dict[str, np.ndarray]:
     """Return, by joint, the unit direction of ground's sign that has room in all of these poses."""
-    m = _without_helpers(m)
+    m = _without_hidden(m)
     leaving: dict[str, list[float]] = {}
     for pose in poses:
         points = {name: _points(m, pose, name) for name in m.bodies}

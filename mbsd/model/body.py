@@ -34,6 +34,10 @@ class Owner(Protocol):
         ...
 
 
+HIDDEN = "hidden"
+"""Look of a body that has no parts and is not drawn, such as those that ratios and elastic cables add."""
+
+
 @dataclass(frozen=True, eq=False)
 class Marker(Suggesting):
     """A frame fixed to a body: ``x``, ``y`` (m) and ``angle`` (rad) in the body's frame."""
@@ -101,7 +105,8 @@ class Body(Suggesting):
     z: float | None = None
     """Place of its centre of mass along the normal of the plane (m); None: not given, and 0 where it counts."""
     looks: str = ""
-    """Look of its automatic parts, such as "piston"; empty: what its name says. No equation knows it."""
+    """Look of its automatic parts, such as "piston", which no equation knows. Empty: what its name says. HIDDEN: it has
+    no parts and is not drawn."""
     products: tuple[float, float] = (0.0, 0.0)
     """Products of inertia, integrals of x z dm and y z dm about the centre of mass in the body frame (kg m^2). They are
     those of a body that reaches along the normal, such as a crankshaft; 0 of one that is alike on both sides of z."""

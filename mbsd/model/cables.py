@@ -40,7 +40,7 @@ import numpy as np
 from mbsd.base.codes import TURN
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
-from mbsd.model.body import Marker
+from mbsd.model.body import HIDDEN, Marker
 from mbsd.model.entries import above_zero, add_contact, add_force, amounts_given, join
 from mbsd.model.force import Element, Force, ForceKind, Interaction, Masses, register_force
 from mbsd.model.joint import ContactKind, Joint, JointKind, register_contact, register_joint
@@ -303,7 +303,7 @@ def capstan(
     pin, spans = own_joint(m, joint, f"force '{name}'"), {"before": before, "after": after}
     for what, span in spans.items():
         if own_joint(m, span, f"force '{name}': {what}").kind is not CABLE_SPAN:
-            raise ModelError(f"{m.name}: force '{name}': {what} is '{span}', which is no cable_span")
+            raise ModelError(f"{m.name}: force '{name}': {what} is '{span}', which is not a cable_span")
     params = {**amounts_given(m, name, coefficient=coefficient, turns=turns), "turns": int(turns)}
     params |= above_zero(m, name, radius=radius, slip_speed=slip_speed)
     params |= {"joint": pin.name, **spans, "clockwise": bool(clockwise), "sticks": bool(sticks)}
@@ -420,7 +420,7 @@ def _add_stretches(
             )
         side, k = (ends, after - 1) if leaving is None else (starts, leaving)
         centre = side[k]
-        body = m.body(f"{name} stretch {number}", mass=0.0)
+        body = m.body(f"{name} stretch {number}", mass=0.0, looks=HIDDEN)
         revolute(m, f"{name} stretch axle {number}", centre, body.origin)
         clockwise = wheel.clockwise != (leaving is None)
         cable_spring(m, f"{name} spring {number}", centre, body.origin, wheel.radius, clockwise=clockwise, **numbers)

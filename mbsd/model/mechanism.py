@@ -13,7 +13,7 @@ from mbsd.base.arguments import finite_number, number_pair
 from mbsd.base.errors import ModelError
 from mbsd.base.names import Named, Suggesting, names_in, no_such, shown
 from mbsd.base.pickled import with_copied_fields
-from mbsd.model.body import Body, Marker, rod_inertia
+from mbsd.model.body import HIDDEN, Body, Marker, rod_inertia
 from mbsd.model.event import Event
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
@@ -126,8 +126,8 @@ class Model(Suggesting):
         ``z``: place of its centre of mass along the normal of the plane, towards the viewer (m). It moves nothing; the
         couples of ``sol.shaking()`` and the layers of the parts follow it. ``products``: integrals of x z dm and y z dm
         about the centre of mass, in the body frame (kg m^2), of a body that reaches along the normal. ``looks``: what
-        its automatic parts look like, such as "piston" or "flywheel"; by default what its name says. Raises ModelError
-        on a name already used or an impossible mass.
+        its automatic parts look like, such as "piston" or "flywheel"; by default what its name says; "hidden": it has
+        none and is not drawn. Raises ModelError on a name already used or an impossible mass.
         """
         return self._with(name, new_body, mass, com, inertia, z=z, products=products, looks=looks)
 
@@ -224,6 +224,11 @@ SHORTEST = 1e-12
 def connections(m: Model) -> tuple[Mapping[str, object], ...]:
     """Entries that share one set of names: all that connect two bodies."""
     return m.joints, m.drivers, m.forces, m.contacts
+
+
+def hidden_bodies(m: Model) -> set[str]:
+    """Return the names of the bodies that have no parts and are not drawn."""
+    return {body.name for body in m.bodies.values() if body.looks == HIDDEN}
 
 
 def own_body(m: Model, body: Body | str, what: str) -> Body:

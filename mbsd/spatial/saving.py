@@ -42,7 +42,7 @@ def save(m: Model, path: str | os.PathLike[str]) -> None:
 
 
 def load(path: str | os.PathLike[str], make: type[M]) -> M:
-    """Return the mechanism that a file describes. Raises ModelError for what is no such file."""
+    """Return the mechanism that a file describes. Raises ModelError for a file that is not one."""
     try:
         content = json.loads(Path(path).read_bytes().decode("utf-8-sig"))
     except OSError as error:

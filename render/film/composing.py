@@ -236,7 +236,7 @@ def lines(title: str, numbers: Sequence[str], rate: str, aspect: float) -> list[
 
 
 def note(words: str, aspect: float, y: float) -> list[LineSpec]:
-    """Return the lines of a note on what the picture shows, from the height ``y`` down; none without words."""
+    """Return the lines of a note under the height ``y``; none without words."""
     if not words:
         return []
     size, broken = _broken(words, NOTE, sides(aspect)[0] - 2 * EDGE, bold=False)

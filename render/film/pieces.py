@@ -104,7 +104,7 @@ ROUND, SIDES = 0.6, 20
 def axis_of(outline: Array) -> tuple[float, float] | None:
     """Return the middle of the circle that most of a convex outline (2 n, 2) is on: such metal is turned.
 
-    None of an outline that is no circle. The circle is that of least squares, once more without what is off it.
+    None for an outline that is not a circle. The circle is that of least squares, once more without what is off it.
     """
     rim = outline[: len(outline) // 2]
     if len(rim) < SIDES:

@@ -1,4 +1,4 @@
-"""report.md: what a run chapters, in sentences and tables: ``python -m render report NAME``."""
+"""report.md: a run in sentences and tables: ``python -m render report NAME``."""
 
 from __future__ import annotations
 

@@ -157,11 +157,11 @@ def _bodies_in_space(motion: Motion3) -> list[tuple[str, str]]:
 
 
 def _refuse_unknown_joints(motion: Motion3, path: Path | str) -> None:
-    """Raise UserError for a driver whose joint there is not."""
+    """Raise UserError for a driver whose joint does not exist."""
     for name, driver in motion.drivers.items():
         if driver.joint is not None and driver.joint not in motion.joints:
             raise UserError(
-                f"{path}: drivers.{name}.joint names '{driver.joint}', which is no joint; there is: "
+                f"{path}: drivers.{name}.joint names '{driver.joint}', which does not exist; there is: "
                 f"{', '.join(motion.joints) or 'none'}"
             )
 

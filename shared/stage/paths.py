@@ -206,7 +206,7 @@ def planar_names() -> list[str]:
 
 
 def planar_among(names: Iterable[str]) -> list[str]:
-    """Return those of some mechanisms whose mechanism.py does not import mbsd.spatial, read without running it."""
+    """Return the mechanisms that do not import mbsd.spatial; their files are read, not run."""
     return [name for name in names if not imports_space(mechanism_file(name))]
 
 

@@ -14,6 +14,8 @@ from hypothesis import strategies as st
 from mbsd import Mechanism, ModelError, constant_rate
 from mbsd.measures import final
 from mbsd.model.body import Marker
+from mbsd.model.mechanism import hidden_bodies
+from tools.random_mechanisms.similar import renamed
 
 G = 9.81
 
@@ -181,3 +183,17 @@ def test_bodies_that_a_ratio_adds_are_not_drawn(tmp_path: Path) -> None:
     m.draw().save(tmp_path / "with.svg")
     words = (tmp_path / "with.svg").read_text()
     assert "idler" not in words
+
+
+def test_only_bodies_that_a_ratio_adds_are_hidden() -> None:
+    """A body without mass whose name begins as theirs is seen, and they stay hidden under other names."""
+    m = Mechanism("clock")
+    hour, minute, own = m.bar("hour", 0.06), m.bar("minute", 0.09), m.bar("works arm", 0.02)
+    hours = m.revolute("hours", m.ground.at(0, 0), hour.start)
+    minutes = m.revolute("minutes", m.ground.at(0, 0), minute.start)
+    m.revolute("beside", m.ground.at(0.2, 0), own.start)
+    m.ratio("works", hours, minutes, 12)
+    assert hidden_bodies(m) == {"works idler"}
+    other = renamed(m)
+    assert other is not None
+    assert len(hidden_bodies(other)) == 1

@@ -181,7 +181,7 @@ def test_a_ball_that_swings_all_round_raises_an_error_that_names_its_joint() -> 
 
 
 def test_bodies_that_would_meet_raise_an_error_that_names_them_and_the_time() -> None:
-    """What a crank carries at its tip sweeps through the shaft of another body."""
+    """A counterweight at the tip of a crank sweeps through the shaft of another body."""
     m = Mechanism("crossed")
     crank, other = m.body("one"), m.shaft("other", (0.05, -0.2, 0.0), (0.05, 0.2, 0.0), 0.004)
     m.revolute("hinge", m.ground, crank, at=(0, 0, -0.1), axis=(0, 1, 0))

@@ -94,7 +94,7 @@ def _negated(document: dict[str, Any]) -> None:
             "they must be perpendicular",
         ),
         (_set("joints", "shaft", "turn", to=[1.0]), r"joints\.shaft\.turn has 1 values"),
-        (_set("drivers", "motor", "joint", to="rope"), r"drivers\.motor\.joint names 'rope', which is no joint"),
+        (_set("drivers", "motor", "joint", to="rope"), r"drivers\.motor\.joint names 'rope', which does not exist"),
         (_set("forces", "spring", "rows", to=[]), "rows"),
         (_set("forces", "spring", "rows", 0, "value", to=[1.0]), r"forces\.spring\.rows\[0\]\.value has 1 values"),
         (_set("forces", "spring", "bodies", 0, to="rope"), r"forces\.spring\.bodies names 'rope'"),

@@ -23,7 +23,7 @@ from typing import Any, NamedTuple
 
 from mbsd.base.arguments import number_pair
 from mbsd.base.errors import ModelError
-from mbsd.model.body import Body, Marker
+from mbsd.model.body import HIDDEN, Body, Marker
 from mbsd.model.entries import join
 from mbsd.model.joint import Joint, JointKind, register_joint
 from mbsd.model.joints.pairs import angle_lock, revolute
@@ -217,7 +217,7 @@ def _travels(m: Model, name: str, slide: Side, turn: Side, travel: float, start:
 def _idler(m: Model, name: str, beside: Marker, distance: float) -> Side:
     """Add a body without mass that turns on the body of a marker, and return its joint."""
     centre = beside.body.at(beside.x + distance, beside.y)
-    body = m.body(name, mass=0.0)
+    body = m.body(name, mass=0.0, looks=HIDDEN)
     revolute(m, f"{name} axle", centre, body.origin)
     return Side(body.origin, centre, 1.0, False)
 
@@ -242,31 +242,17 @@ def _differential(m: Model, name: str, first: Side, second: Side, factor: float,
     row = _on_carrier(m, name, first, idler, scale * factor, moved)
     if second.sign < 0.0:
         second = second.swapped
-    arm = m.body(f"{name} arm", mass=0.0)
+    arm = m.body(f"{name} arm", mass=0.0, looks=HIDDEN)
     revolute(m, f"{name} arm axle", idler.carrier, arm.origin)
     turned = second.carrier.angle - second.mover.angle
     halves = (idler.mover, second.carrier.body, 0.0), (idler.carrier, second.mover.body, turned)
     for k, (centre, copied, angle) in enumerate(halves, start=1):
-        copy = m.body(f"{name} copy {k}", mass=0.0)
+        copy = m.body(f"{name} copy {k}", mass=0.0, looks=HIDDEN)
         revolute(m, f"{name} copy axle {k}", arm.at(reach, 0.0), copy.origin)
         angle_lock(m, f"{name} lock {k}", copied.origin, copy.origin)
         together = None if shift is None else (0.0, angle)
         turn_ratio(m, f"{name} half {k}", centre, copy.origin, -1.0, together)
     return row
-
-
-def helper_bodies(m: Model) -> set[str]:
-    """Return the names of the bodies without mass that ratios and elastic cables have added.
-
-    They have no parts and are not drawn.
-    """
-    rows = [f"{joint.name} " for joint in m.joints.values() if joint.kind in (TURN_RATIO, TRAVEL_RATIO)]
-    stretches = {force.j.body.name for force in m.forces.values() if force.kind.counts_turn}
-    return {
-        body.name
-        for body in m.bodies.values()
-        if body.mass == 0.0 and (body.name in stretches or any(body.name.startswith(row) for row in rows))
-    }
 
 
 _Coordinate = tuple[str, str, bool]
@@ -302,7 +288,7 @@ def _refuse(
     already = f"{' and '.join(repr(name) for name in names)} already {'make' if len(names) > 1 else 'makes'} it"
     raise ModelError(
         f"{m.name}: joint '{joint.name}' makes '{other[1]}' move {factor:.6g} times as much as '{first[1]}' on "
-        f"'{first[0]}', but {already} {factor_known:.6g} times: together they lock both. Leave first out, or let the "
+        f"'{first[0]}', but {already} {factor_known:.6g} times: together they lock both. Leave one out, or let the "
         "ratios agree"
     )
 
@@ -335,6 +321,7 @@ def _relations(m: Model, joint: Joint) -> Iterator[tuple[_Coordinate, _Coordinat
         for carrier in _carriers(m, joint.i, "pin") & _carriers(m, joint.j, "pin"):
             yield (carrier, joint.i.body.name, False), (carrier, joint.j.body.name, False), float(-first / second)
     else:
+        # one sense for all markers of a slider, whichever way their x axes point along it
         sense = 1.0 if math.cos(joint.i.angle - 1e-3) > 0.0 else -1.0
         for carrier in _carriers(m, joint.i, "guide") & _carriers(m, joint.j, "pin"):
             yield (carrier, joint.j.body.name, False), (carrier, joint.i.body.name, True), sense * float(numbers[2])

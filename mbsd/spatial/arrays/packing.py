@@ -53,7 +53,7 @@ class Packed:
     """Numbers of the turns that are counted for events, by the names of joints."""
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return all but functions at addresses, which are those of this process."""
+        """Return the state without function addresses, which hold in this process alone."""
         return {key: value for key, value in vars(self).items() if key != "callbacks"}
 
     def __setstate__(self, state: dict[str, Any]) -> None:

@@ -16,6 +16,9 @@ import numpy as np
 
 from mbsd.compiling.jit import internal
 
+OWN = 0.0025
+"""Square of the part of a row that must be its own among those in use."""
+
 
 class Envelope(NamedTuple):
     """The order of the rows in use, and where S has entries, as constant arrays."""

@@ -37,7 +37,7 @@ from mbsd.spatial.equations.vectors import add_turning, make_unit, turn_vectors
 
 
 class Switches(NamedTuple):
-    """Forces that switch, of which there are none yet."""
+    """Forces that switch; there are none in space yet."""
 
     switch: Any
 

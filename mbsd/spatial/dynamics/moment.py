@@ -40,7 +40,7 @@ class FrameNow(Suggesting):
 
 @dataclass(frozen=True)
 class JointNow(Suggesting):
-    """Turn (rad, with its whole turns) and slide (m) of a joint now, with their rates; NaN of what it has not."""
+    """Turn (rad, with its whole turns) and slide (m) of a joint now, with their rates; NaN where it has none."""
 
     turn: float
     turn_rate: float

@@ -10,12 +10,9 @@ from mbsd.equations.interactions.switching import WIDTH
 from mbsd.kinematics.pose.held_values import independent_rows
 from mbsd.kinematics.pose.mobility import better_rows
 from mbsd.spatial.arrays.packing import Packed
-from mbsd.spatial.dynamics.envelope import envelope_of
+from mbsd.spatial.dynamics.envelope import OWN, envelope_of
 from mbsd.spatial.dynamics.formulation import SpaceDynamics, Switches, Table
 from mbsd.spatial.model.rotation import rotation_matrix
-
-OWN = 0.0025
-"""Square of the part of a row that must be its own among those in use."""
 
 
 class ReferenceCoordinates:

@@ -106,7 +106,7 @@ class Run:
         """Return the coordinates that were asked for, else those that are likely to be quicker."""
         why = _why_reference(self.m)
         if self.formulation == TREE and why:
-            raise ModelError(f"{self.m.name}: formulation='tree' knows no {why}; leave it out")
+            raise ModelError(f"{self.m.name}: {why} need formulation='reference'; leave formulation= out")
         if self.formulation != REFERENCE and not why:
             tree = TreeCoordinates(self.m, self.packed, q, v, turns, rank)
             if self.formulation == TREE or tree.nanoseconds() < ReferenceCoordinates.nanoseconds(self.packed):
@@ -223,10 +223,10 @@ class Run:
 
 
 def _why_reference(m: Model) -> str:
-    """Return what only reference coordinates know of a mechanism; empty: nothing."""
+    """Return what needs reference coordinates, in words; empty if nothing does."""
     if m.events:
-        return "events"
-    return "friction of joints" if any(force.kind.friction_of is not None for force in m.forces.values()) else ""
+        return "events of the user"
+    return "joints with friction" if any(force.kind.friction_of is not None for force in m.forces.values()) else ""
 
 
 def _refuse_superfluous_drivers(packed: Packed, independent: list[int], mobility: Mobility) -> None:

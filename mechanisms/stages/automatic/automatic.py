@@ -10,7 +10,7 @@ from pathlib import Path
 import cadquery as cq
 
 from mbsd import Mechanism, Solution
-from mbsd.model.joints.ratios import helper_bodies
+from mbsd.model.mechanism import hidden_bodies
 from mechanisms.stages.automatic import assembly
 from mechanisms.stages.automatic.body_shapes import Joined
 from mechanisms.stages.automatic.decision import NoOrder, decided
@@ -96,7 +96,7 @@ class Automatic:
         self._replaced: dict[str, list[Solid]] = {}
         self._own: dict[str, OwnSolid] = {}
         self._joined: list[Joined] = []
-        self._left_out: set[str] = helper_bodies(m)
+        self._left_out: set[str] = hidden_bodies(m)
         self._glass: set[str] = set()
         self._touching: set[tuple[str, str]] = set()
         self._marks: list[tuple[str, Mark]] = []

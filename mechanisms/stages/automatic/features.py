@@ -10,7 +10,7 @@ from mbsd import Mechanism
 from mbsd.model.cables import seen_span
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
-from mbsd.model.joints.ratios import helper_bodies
+from mbsd.model.mechanism import hidden_bodies
 from mechanisms.stages.automatic.body_shapes import Joined
 from mechanisms.stages.automatic.layout.items import Anchor, Heights
 from mechanisms.stages.automatic.layout.layout import Feature, Layout
@@ -63,11 +63,11 @@ def gathered(layout: Layout) -> list[Feature]:
     m = layout.m
     by_kind: dict[str, list[Joint]] = {}
     loose: list[Joint] = []
-    helpers = helper_bodies(m)
+    hidden = hidden_bodies(m)
     for name, joint in m.joints.items():
         kind = joint.kind.name
         joint = seen_span(m, joint) if "span" in joint.kind.constraints else joint
-        if kind in SHAPELESS or helpers.intersection(joint.bodies):
+        if kind in SHAPELESS or hidden.intersection(joint.bodies):
             continue
         if layout.apart.intersection(joint.bodies) or (kind == ROD and joint not in layout.rods.values()):
             loose.append(joint)

@@ -176,7 +176,7 @@ class Panes:
         return self.bottom + level * (THICK + GAP)
 
     def _faces(self, body: str, levels: Mapping[str, int]) -> Sequence[float]:
-        """Return the lower and upper face of a body's plate, of ground its face; nothing of what has no solids."""
+        """Return the lower and upper face of a body's plate, of ground its face; nothing for bodies without solids."""
         if body == "ground":
             return (0.0,)
         if body in levels:

@@ -11,6 +11,7 @@ import cadquery as cq
 import numpy as np
 
 from mbsd import Mechanism
+from mbsd.model.body import HIDDEN
 from mechanisms.stages.automatic.layout.items import Anchor, Heights, Item, Reach
 from mechanisms.stages.automatic.layout.layout import Feature, Layout
 from mechanisms.stages.automatic.layout.plan import Foot, Plan
@@ -37,6 +38,7 @@ WORDS: Mapping[str, tuple[str, ...]] = {
 """Looks of bodies, and the words of names that say so."""
 PLAIN = "plate"
 """The look of a body that is what it would be without a name."""
+KNOWN = (*WORDS, PLAIN, HIDDEN)
 
 
 def looks_of(m: Mechanism) -> dict[str, str]:
@@ -47,14 +49,14 @@ def looks_of(m: Mechanism) -> dict[str, str]:
     meant = {word: look for look, words in WORDS.items() for word in words}
     looks: dict[str, str] = {}
     for name, body in m.bodies.items():
-        if body.looks and body.looks not in (*WORDS, PLAIN):
+        if body.looks and body.looks not in KNOWN:
             raise UserError(
-                f"{m.name}: body '{name}' looks like '{body.looks}'; there is: {', '.join((*WORDS, PLAIN))}"
-                f"{did_you_mean(body.looks, (*WORDS, PLAIN))}"
+                f"{m.name}: body '{name}' looks like '{body.looks}'; there is: {', '.join(KNOWN)}"
+                f"{did_you_mean(body.looks, KNOWN)}"
             )
         words = re.findall(r"[a-z]+", name.lower())
         look = body.looks or (meant.get(words[-1], "") if words else "")
-        if name != "ground" and look not in ("", PLAIN):
+        if name != "ground" and look not in ("", PLAIN, HIDDEN):
             looks[name] = look
     return looks
 

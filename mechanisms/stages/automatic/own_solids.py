@@ -26,7 +26,7 @@ from shared.stage.paths import mechanism_folder
 LARGEST = 200e6
 """Bytes of a file."""
 BESIDE, SLANTED = 0.02, 1e-6
-"""A hole may be beside its joint by so much (mm), and lean by so much (rad)."""
+"""Largest distance of a hole from its joint (mm), and its largest lean (rad)."""
 HEAD = b"ISO-10303-21"
 
 
@@ -128,7 +128,7 @@ def _refuse_unreadable(what: str, path: Path) -> None:
         raise UserError(f"{what}, has {path.stat().st_size / 1e6:.0f} MB; {LARGEST / 1e6:.0f} MB are the most")
     with path.open("rb") as stream:
         if HEAD not in stream.read(256):
-            raise UserError(f"{what}, is no STEP file: it does not begin with {HEAD.decode()}. Export it as STEP")
+            raise UserError(f"{what}, is not a STEP file: it does not begin with {HEAD.decode()}. Export it as STEP")
 
 
 def holes_of(solid: cq.Solid, thickness: float) -> list[Hole]:

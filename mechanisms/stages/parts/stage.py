@@ -206,13 +206,10 @@ def _unsound(pieces: list[str]) -> str:
     """Return the sentence on pieces that are shown as panes; nothing without any."""
     from mechanisms.stages.automatic.glass import sentence_of
 
-    return (
-        sentence_of(
-            [piece.replace("_", " ") for piece in pieces], f"{{}} {'is' if len(pieces) == 1 else 'are'} no closed solid"
-        )
-        if pieces
-        else ""
-    )
+    if not pieces:
+        return ""
+    named = [piece.replace("_", " ") for piece in pieces]
+    return sentence_of(named, "{} is not a closed solid" if len(named) == 1 else "{} are not closed solids")
 
 
 def _of_cluster(out: Out, given: Any, wish: _Wish, recorder: Recorder) -> _Result | None:

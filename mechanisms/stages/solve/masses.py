@@ -171,7 +171,7 @@ def give_masses_aloud(stage: str, name: str, m: Mechanism, parts: Parts | None) 
 
 
 def bodies_of(parts: Parts) -> dict[str, BodyParts]:
-    """Return the bodies of parts.json without its rods and other links of joints, which are none of mechanism.py."""
+    """Return the bodies of parts.json without rods and other links of joints, which mechanism.py does not have."""
     return {name: body for name, body in parts.bodies.items() if body.spans is None and not body.link}
 
 

@@ -206,7 +206,7 @@ def _with_arrows(show: str, film: Film) -> Film | None:
 
 
 def _in_balance(film: Film, reason: Insight) -> Film:
-    """Return the film with the forces and torques on one body alone, as that feels them: that of the reason.
+    """Return the film with the forces and torques on the body of the reason alone, as it feels them.
 
     The same film where arrows are no forces, or the reason names no body that moves.
     """

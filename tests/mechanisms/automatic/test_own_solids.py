@@ -77,8 +77,8 @@ def test_files_that_are_no_solid_are_refused(tmp_path: Path) -> None:
         read_solid("four_bar", "coupler", "missing.step")
     file = tmp_path / "bad.step"
     for content, words in (
-        (b"", "is no STEP file"),
-        (b"\x00" * 999, "is no STEP file"),
+        (b"", "is not a STEP file"),
+        (b"\x00" * 999, "is not a STEP file"),
         (b"ISO-10303-21;\nHEADER;\n", "cannot be read|has no solid"),
     ):
         file.write_bytes(content)

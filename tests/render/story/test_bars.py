@@ -1,4 +1,4 @@
-"""What a story must keep to, computed from its scene: motion, time that stands, badges, arrows, the first second."""
+"""Bars of stories, computed from their scenes: motion, time that stands, badges, arrows, the first second."""
 
 from __future__ import annotations
 

@@ -11,10 +11,11 @@ import numpy as np
 
 from mbsd.equations.interactions.switching import WIDTH
 from mbsd.spatial.arrays.packing import Packed, pack
-from mbsd.spatial.dynamics.envelope import Envelope, Factors
+from mbsd.spatial.dynamics.envelope import OWN, Envelope, Factors
+from mbsd.spatial.dynamics.formulation import Switches
 from mbsd.spatial.dynamics.tree import arrays
 from mbsd.spatial.dynamics.tree.arrays import Tree, work_for
-from mbsd.spatial.dynamics.tree.formulation import LIMIT, Switches, TreeDynamics, begin
+from mbsd.spatial.dynamics.tree.formulation import TreeDynamics, begin
 from mbsd.spatial.dynamics.tree.spanning import Link, spanning_tree
 from mbsd.spatial.model.body import Marker
 from mbsd.spatial.model.joint import Joint
@@ -77,7 +78,7 @@ class TreeCoordinates:
             chosen=np.ones(used),
             per_size=per_size,
             pushed=np.zeros(rows),
-            limit=np.array([LIMIT if used < held else 0.0]),
+            limit=np.array([OWN if used < held else 0.0]),
             turns=turns,
         )
         begin(dyn, self.ws, self.y[0], self.y[1], drive)

@@ -18,7 +18,7 @@ from mbsd.compiling.jit import apart, internal, kernel
 from mbsd.dynamics.formulation import add_formulation
 from mbsd.dynamics.state import NEXT, TIME, WORK
 from mbsd.equations.laws import evaluate_laws
-from mbsd.spatial.dynamics.envelope import solve
+from mbsd.spatial.dynamics.envelope import OWN, solve
 from mbsd.spatial.dynamics.tree.arrays import COUNT, FIRST_Q, FIRST_Z, FREE, KIND, LEFT, MOTION, SPHERICAL
 from mbsd.spatial.dynamics.tree.bodies import factor_tree, release, weigh
 from mbsd.spatial.dynamics.tree.places import at_centre, place_tree
@@ -26,15 +26,6 @@ from mbsd.spatial.dynamics.tree.rows import answer_rows, factor_rows, hold_rows,
 from mbsd.spatial.equations.evaluation import evaluate_gamma, evaluate_nu, evaluate_rows
 from mbsd.spatial.equations.forces import apply_forces
 from mbsd.spatial.equations.vectors import add_turning, make_unit
-
-LIMIT = 0.0025
-"""Square of the part of a row that must be its own among those in use."""
-
-
-class Switches(NamedTuple):
-    """Forces that switch, of which there are none yet."""
-
-    switch: Any
 
 
 class TreeDynamics(NamedTuple):
@@ -197,7 +188,7 @@ def settle(dyn, scratch, t, state, fresh):
     if narrow:
         factor_tree(dyn.tree, dyn.work, dyn.system, ws)
         if renew_rows(dyn, ws):
-            dyn.limit[0] = LIMIT
+            dyn.limit[0] = OWN
         else:
             dyn.limit[0] *= 0.1
     return False

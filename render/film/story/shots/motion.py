@@ -32,7 +32,7 @@ def title(scenery: Scenery, after: Shot | None) -> Shot | None:
 
 
 def _run(scenery: Scenery, seconds: float) -> tuple[float, float]:
-    """Return where the motion is (s) so many seconds of film before it comes to its poster, and its rate.
+    """Return the time of the motion (s) some seconds of film before its poster, and its rate.
 
     Title and last shot have these pictures in common. A motion whose poster is at its start goes on from there.
     """

@@ -6,7 +6,8 @@ import argparse
 import importlib
 
 from shared.stage.console import run_cli
-from shared.stage.paths import compared, known_name, mechanism_file, owner_of, variants_in
+from shared.stage.errors import UserError
+from shared.stage.paths import compared, imports_space, known_name, mechanism_file, owner_of, variants_in
 
 STAGES = {
     "parts": ("mechanisms.stages.parts.stage", "make the solids: STL, STEP and parts.json"),
@@ -18,10 +19,22 @@ STAGES = {
     "tolerances": ("mechanisms.stages.tolerances", "how parts as they are made stray: tolerances/"),
 }
 
+PLANAR = {
+    "animate": "animation",
+    "print": "print",
+    "tolerances": "analysis of tolerances",
+    "export": "export",
+    "study": "study",
+    "check": "check",
+}
+"""Commands that know mechanisms in the plane alone, and what they give."""
+
 
 def main() -> int | None:
     """Read the command line and run one stage; each is imported only when it is asked for."""
     arguments = _parser().parse_args()
+    if arguments.command in PLANAR:
+        _refuse_space(arguments.command, arguments.name)
     if arguments.command in STAGES:
         name, stage = known_name(arguments.name), importlib.import_module(STAGES[arguments.command][0])
         if arguments.command == "animate":
@@ -70,6 +83,15 @@ def main() -> int | None:
     if arguments.command == "current":
         return listing.tell_current(arguments.names)
     return listing.run(arguments.names, arguments.json)
+
+
+def _refuse_space(command: str, name: str) -> None:
+    """Raise UserError for a mechanism in space."""
+    file = mechanism_file(owner_of(name))
+    if file.is_file() and imports_space(file):
+        raise UserError(
+            f"{name} is a mechanism in space, for which there is no {PLANAR[command]} yet; see docs/space.md"
+        )
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -57,9 +57,9 @@ class Clock:
         self.last = self.codes[-1]
 
 
-# Operations of a prim: translate, rotateZ and scale at time codes.
+# Operations of a prim: translate, rotateZ or orient (in space), and scale at time codes.
 
-ADD = {"translation": "AddTranslateOp", "angle": "AddRotateZOp", "scale": "AddScaleOp"}
+ADD = {"translation": "AddTranslateOp", "angle": "AddRotateZOp", "rotation": "AddOrientOp", "scale": "AddScaleOp"}
 """In the order of the prim's list: the last acts first."""
 
 
@@ -84,6 +84,8 @@ def _plain(track: Track) -> list[Any]:
     """Return values as USD takes them."""
     if track.path == "angle":
         return [math.degrees(angle) for angle in track.values]
+    if track.path == "rotation":
+        return [Gf.Quatd(w, x, y, z) for x, y, z, w in track.values.tolist()]
     return [Gf.Vec3d(*value) for value in track.values.tolist()]
 
 
@@ -248,7 +250,7 @@ class _Writer:
         for path in ADD:
             if path in tracks:
                 move(thing, tracks[path], self._codes(tracks[path]))
-            elif path in self._nodes[number]:
+            elif path != "rotation" and path in self._nodes[number]:
                 place(thing, path, self._nodes[number][path])
         if "weights" in tracks:
             self._meshes.wind(thing, primitives[0], tracks["weights"].values, self._codes(tracks["weights"]))

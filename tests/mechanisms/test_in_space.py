@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import math
+import sys
 from functools import cache
 from typing import Any
 
@@ -12,6 +13,7 @@ import pytest
 
 from mbsd.spatial import Mechanism, constant_rate
 from mbsd.spatial.model.rotation import rotation_matrix
+from mechanisms.__main__ import main
 from mechanisms.heavy_top import mechanism as top
 from mechanisms.rssr import mechanism as rssr
 from mechanisms.sarrus import mechanism as sarrus
@@ -225,3 +227,10 @@ def test_masses_of_parts_fill_in_only_where_the_file_gave_none() -> None:
     moments, axes = crank.principal
     np.testing.assert_allclose(axes @ np.diag(moments) @ axes.T, crank.inertia, atol=1e-15)
     assert abs(np.linalg.det(rotation_matrix(crank.orientation)) - 1.0) < 1e-12
+
+
+@pytest.mark.parametrize("command", ["animate", "print", "tolerances", "export", "study", "check"])
+def test_commands_for_the_plane_refuse_a_mechanism_in_space(command: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "argv", ["mechanisms", command, "heavy_top"])
+    with pytest.raises(UserError, match=r"heavy_top is a mechanism in space, for which there is no .* yet; see docs/sp"):
+        main()

@@ -1,4 +1,4 @@
-"""Reactions along a motion: multipliers of all joints, of least norm where joints repeat each other.
+"""Reactions along a motion, of least norm where joints repeat each other, and what its equations leave open.
 
     J^T lam = Q - M a
     J^T = Q R   =>   lam = R^-1 Q^T (Q - M a)         rows are independent
@@ -57,3 +57,21 @@ def _least_norm(jac: np.ndarray, load: np.ndarray, rank: int) -> np.ndarray:
         return orthogonal @ np.linalg.solve(np.swapaxes(upper, 1, 2), load)
     left, size, right = np.linalg.svd(jac, full_matrices=False)
     return left[..., :rank] @ ((right[:, :rank] @ load) / size[:, :rank, None])
+
+
+def residuals(packed: Packed, laws: Laws, motion: Any) -> tuple[float, float, float, float]:
+    """Return the largest |Phi|, |J v - nu|, |J a - gamma| and missing power of a motion (SI)."""
+    phi, jac, gamma = tabulated(packed, motion.drives, motion.q, motion.v, motion.turn)
+    nu = np.zeros(phi.shape)
+    for row, law in packed.system.driven:
+        nu[:, row] = motion.drives[:, law, 1]
+    speed = np.einsum("trc,tc->tr", jac, motion.v[:, 3:]) - nu
+    bend = np.einsum("trc,tc->tr", jac, motion.a[:, 3:]) - gamma
+    loads, _ = loads_along(packed, laws, motion)
+    power = (loads * motion.v).sum(axis=1) - (motion.lam[:, : nu.shape[1]] * nu).sum(axis=1)
+    return (
+        float(np.abs(phi).max(initial=0.0)),
+        float(np.abs(speed).max(initial=0.0)),
+        float(np.abs(bend).max(initial=0.0)),
+        float(np.abs(power).max(initial=0.0)),
+    )

@@ -37,8 +37,7 @@ from mbsd.spatial.results.frames import (
     slides_between,
     turns_between,
 )
-from mbsd.spatial.results.reactions import with_reactions
-from mbsd.spatial.results.residuals import residuals
+from mbsd.spatial.results.reactions import residuals, with_reactions
 from mbsd.spatial.results.views import FrameView, JointView
 
 if TYPE_CHECKING:

@@ -106,7 +106,7 @@ def test_one_command_makes_motion_parts_report_plots_and_glb(made: Out) -> None:
     text = made.report.read_text()
     assert "moves in space, has 1 degree of freedom and is driven by motor" in text
     assert {path.stem for path in made.plots.glob("*.png")} == {"path", "bodies", "energy", "reactions"}
-    with pytest.raises(UserError, match="a mechanism in space, for which this is not there yet"):
+    with pytest.raises(UserError, match="a mechanism in space; this needs one in the plane"):
         read_motion(made.motion)
     motion = read_film(made).in_space
     assert motion is not None
@@ -164,3 +164,18 @@ def test_a_section_of_a_mechanism_in_space_raises_an_error(made: Out) -> None:
     cut = Film(film.in_space or film.motion, film.parts, Shot(section=0.4), Path(made.parts_folder))
     with pytest.raises(UserError, match="section cuts mechanisms in the plane"):
         _ = cut.scene
+
+
+def test_bodies_of_the_usd_stage_turn_as_data_json_has_them(made: Out) -> None:
+    pxr = pytest.importorskip("pxr.UsdGeom", reason="OpenUSD is not installed (extra usd)")
+    from render.usd.scene import stage_of
+
+    film = read_film(made)
+    assert film.in_space is not None
+    stage, body = stage_of(film), film.in_space.bodies["middle"]
+    (prim,) = [prim for prim in stage.Traverse() if prim.GetName() == "middle"]
+    for k in (0, 7, len(film.in_space.time) // 2):
+        code = (film.in_space.time[k] - film.in_space.time[0]) * stage.GetTimeCodesPerSecond()
+        placed = np.array(pxr.Xformable(prim).GetLocalTransformation(code)).T
+        np.testing.assert_allclose(placed[:3, :3], matrices(body.quaternion)[k], atol=1e-12)
+        np.testing.assert_allclose(placed[:3, 3], body.place[k], atol=1e-12)

@@ -28,7 +28,7 @@ Built = tuple[Any, Callable[[], np.ndarray]]
 
 
 def settings(problem: str) -> str:
-    """In words."""
+    """Return the settings of a run in words."""
     if problem == space.SWEEP:
         return STATIC
     return f"{'tree, ' * (problem in space.CHAINS)}{SOLVERS[problem]}, {COUNTS[problem]} steps"

@@ -21,7 +21,7 @@ TOLERANCES = dict(zip(space.PROBLEMS[:-1], (3.5e-6, 5e-5, 3e-7, 2e-5, 5e-4), str
 
 
 def settings(problem: str) -> str:
-    """In words."""
+    """Return the settings of a run in words."""
     if problem == space.SWEEP:
         return "pos+vel+acc"
     return f"dop853, tolerance {TOLERANCES[problem]:g}"

@@ -23,7 +23,7 @@ SOFT = 'solimp="0.9999 0.9999 0.001 0.5 2"'
 
 
 def settings(problem: str) -> str:
-    """In words."""
+    """Return the settings of a run in words."""
     loop = ", Newton, softness 2" if problem in (space.BRICARD, space.SWEEP) else ""
     return f"RK4{loop}, {COUNTS[problem]} steps"
 

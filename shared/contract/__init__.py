@@ -90,8 +90,8 @@ def read_motion(path: Path, mechanism: str | None = None) -> Motion:
     motion = read_any_motion(path, mechanism)
     if isinstance(motion, Motion3):
         raise UserError(
-            f"{path} is of '{motion.mechanism}', a mechanism in space; this needs one in the plane. docs/space.md lists "
-            "what works in space"
+            f"{path} is of '{motion.mechanism}', a mechanism in space; this needs one in the plane. docs/space.md "
+            "lists what works in space"
         )
     return motion
 

@@ -25,7 +25,7 @@ WITHIN = {"open": 1e-9, "acceleration": 1e-6, "reaction": 1e-6}
 
 
 def case(seed: int) -> dict[str, object]:
-    """Return what came of a case: differences by formulation, and whether all are within bounds."""
+    """Return the differences of a case by formulation, and whether all are within bounds."""
     m, out = random_mechanism(seed), dict[str, object]()
     good = True
     for formulation in ("reference", "tree"):

@@ -8,8 +8,9 @@
 
 s is the valve's travel from its middle, the coordinate of its prismatic joint on the cylinder's body: for chamber b it
 counts the other way. b is the width of the ports, C = discharge sqrt(R T). The gas is ideal, of one temperature in all
-ports; with closed ports p V^n stays. Where nearly no pressure is lost, the flow is laminar. Positive F pushes the
-piston along the x axis of the cylinder's marker, away from chamber a.
+ports; with closed ports p V^n stays. Edges are round, so a port opens smoothly over the first fiftieth of its width.
+Where nearly no pressure is lost, the flow is laminar. Positive F pushes the piston along the x axis of the cylinder's
+marker, away from chamber a.
 
 Sources: Heywood, Internal Combustion Engine Fundamentals, app. C (flow through valves); Ripper, Steam Engine Theory
 and Practice, 1908, ch. 6 and 10 (lap, lead, cut-off, indicator diagrams).

@@ -260,7 +260,8 @@ def _wheel(looks: str) -> Callable[[str, Layout], list[Feature]]:
         """Return a disc about the pin on ground, or the only one; nothing for what is a wheel already."""
         pins = pins_on(layout, body)
         hub = next((pin for pin in pins if pin.on_ground), pins[0] if len(pins) == 1 else None)
-        if hub is None or layout.wheels.get(body) or any(key[0] == body for key in layout.rounds):
+        filled = any(getattr(feature, "fills", "") == body for feature in layout.features)
+        if hub is None or filled or layout.wheels.get(body) or any(key[0] == body for key in layout.rounds):
             return []
         x, y = hub.places[body]
         radius = max([LEAST_RADIUS[looks], *(math.hypot(a.x - x, a.y - y) + a.radius + BEYOND

@@ -28,6 +28,10 @@ FAR = 1e-3
 """A variant's motion is no farther than this from the motion itself, in sizes and rad."""
 
 
+OF_STATES = 1e-3
+"""Part of a number by which it changes where states of forces are followed: they are less exact than poses."""
+
+
 class SweepTangents:
     """A sweep, and its tangents by numbers."""
 
@@ -53,7 +57,9 @@ class SweepTangents:
             if far > FAR:  # near a toggle a small change of a length is a large one of the pose
                 variants = variation.of(number, step=usual * FAR / far)
             if sol.states is not None:
-                tangent_of.states = self._states(variants, tangent_of)
+                wide = variation.of(number, step=usual * max(1.0, min(OF_STATES / usual, FAR / max(far, 1e-300))))
+                tangent_of.states = self._states(wide, tangent_of)
+                tangent_of.lam += inverse.multipliers(self._loads(tangent_of.states, variants.step), None)
             self.variants.append(variants)
             self.tangents.append(tangent_of)
 
@@ -93,6 +99,14 @@ class SweepTangents:
             return out[rows]
 
         return variants.slope(states)
+
+    def _loads(self, change: np.ndarray, step: float) -> np.ndarray:
+        """(T, 3 nb) how loads change as states do by ``change`` (T, s) times a number, which goes a step both ways."""
+        assert self.along.states is not None
+        there, here = (
+            self.terms.applied(replace(self.along, states=self.along.states + side * step * change)) for side in (1, -1)
+        )
+        return (there - here) / (2.0 * step)
 
     @cached_property
     def _close(self) -> tuple[Along, Inverse]:

@@ -74,7 +74,7 @@ def _stage(out: Out) -> Stage:
         sources_key(),
         versions("numpy", "markdown-it-py"),
     )
-    key = key_of(out.motion, out.skeleton, *there, *(str(path) for path in there), *ours)
+    key = key_of(out.motion, out.skeleton, *there, *(path.name for path in there), *ours)
     return Stage(out, "article", key, [out.article, out.article.with_suffix(".md")])
 
 

@@ -35,7 +35,9 @@ export class Article {
     const scrolled = () => { if (!asked) { asked = true; requestAnimationFrame(look); } };
     addEventListener("scroll", scrolled, { passive: true });
     addEventListener("resize", scrolled);
-    for (const kind of ["focusin", "pointerdown"]) text.addEventListener(kind, (event) => { const one = event.target.closest("[data-scene]"); if (one) this.read(one); });
+    text.addEventListener("focusin", (event) => this.read(this.held = event.target.closest("[data-scene]")));
+    text.addEventListener("pointerdown", (event) => this.read(event.target.closest("[data-scene]")));
+    for (const kind of ["wheel", "touchmove"]) addEventListener(kind, () => { this.held = null; }, { passive: true });
     for (const one of text.querySelectorAll(".push")) Object.assign(one, { tabIndex: 0, role: "button" });
     text.addEventListener("click", (event) => this.click(event.target.closest(".push")));
     text.addEventListener("keydown", (event) => {
@@ -50,13 +52,15 @@ export class Article {
     this.numbers.show();
   }
 
-  /** The last paragraph above the line at which one reads. */
+  /** The paragraph whose numbers a keyboard is at, while it is seen; else the last one above the line at which one reads. */
   reading() {
+    const box = this.held?.getBoundingClientRect();
+    if (box && box.bottom > 0 && box.top < innerHeight) return this.held;
     const top = narrow() ? Math.max(this.app.parts.beside.getBoundingClientRect().bottom, 0) : 0, line = top + LINE * (innerHeight - top);
     return this.paragraphs.findLast((one) => one.getBoundingClientRect().top <= line) ?? this.paragraphs[0];
   }
 
-  /** @param {HTMLElement | undefined} one */
+  /** @param {HTMLElement | null | undefined} one */
   read(one) {
     if (!one || one === this.now) return;
     this.now?.removeAttribute("aria-current");

@@ -224,7 +224,7 @@ class Sentences:
         for kind, names in groups.items():
             one, several = self.kinds.get(kind, [kind.replace("_", " "), f"{kind.replace('_', ' ')}s"])
             shown = [self._shown_joint(name) for name in names]
-            told = f" ({listed(shown)})" if len(names) <= SEVERAL else ""
+            told = f" ({listed(shown)})" if len(names) <= SEVERAL and names != [one] else ""
             yield f"{self.count(len(names))} {escaped(one if len(names) == 1 else several)}{told}"
 
     def _shown_joint(self, name: str) -> str:
@@ -266,6 +266,8 @@ class Sentences:
         return address("body", name, "x" if np.ptp(body.x) > np.ptp(body.y) else "y")
 
     def _curve_of(self, each: Insight) -> str:
+        if each.kind == "period":
+            return self.curve
         if each.kind == "speed_peak":
             name = each.bodies[-1]
             return address("body", name, "omega" if np.ptp(self.motion.bodies[name].theta) > 1e-6 else "speed")

@@ -87,7 +87,7 @@ export class Article {
   /** To the moment of a paragraph, or on from its beginning. */
   goes({ at, to }) {
     const { app } = this, { clock } = app, { time } = app.store.state;
-    const target = at === undefined ? null : Math.min(Math.max(at, clock.start), clock.end);
+    const first = to === undefined || this.plays ? at : (at + Math.min(to, clock.end)) / 2, target = at === undefined ? null : Math.min(Math.max(first, clock.start), clock.end);
     this.way = { began: 0, from: time, to: target, then: to !== undefined || at === undefined };
     if (target === null) app.play(this.plays);
     else app.store.set({ playing: false });

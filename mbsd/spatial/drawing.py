@@ -25,7 +25,7 @@ from mbsd.spatial.results.solution import Solution
 AZIMUTH, ELEVATION = math.radians(-20.705), math.radians(19.471)
 UNIT = 0.022
 """Size of the signs, as a part of the mechanism's size."""
-ROUND = np.linspace(0.0, 2.0 * math.pi, 33)[:-1]
+ROUND, RIM = (np.linspace(0.0, 2.0 * math.pi, count + 1)[:-1] for count in (32, 72))
 GROUND, INK = "quiet", "ink"
 
 
@@ -114,13 +114,15 @@ class _Drawing:
         places = np.array([(end.x, end.y, end.z) for end in ends], float).reshape(-1, 3)
         apart = [k for k, p in enumerate(places) if (np.linalg.norm(places[:k] - p, axis=1) > 0.2 * self.unit).all()]
         if len(apart) == 2:
-            self._line(*(ends[k] for k in apart), ink)
+            self._line(ends[apart[0]], ends[apart[1]], ink)
         elif len(apart) > 2:
-            centre = End(name, *map(float, places[apart].mean(axis=0)))
+            x, y, z = places[apart].mean(axis=0)
+            centre = End(name, float(x), float(y), float(z))
             for k in apart:
                 self._line(centre, ends[k], ink)
         if self.m.bodies[name].mass > 0.0 and len(apart) < 2:
-            middle = End(name, *map(float, self.m.bodies[name].com))
+            x, y, z = self.m.bodies[name].com
+            middle = End(name, float(x), float(y), float(z))
             for k in apart:
                 self._line(ends[k], middle, ink)
             self._ring(middle, 0.7, ink, 1.5, ink)
@@ -137,7 +139,7 @@ class _Drawing:
         flat = math.hypot(*seen)
         along = seen / flat if flat > 1e-9 else np.array([1.0, 0.0])
         depth = 1.0 if is_ball else math.sqrt(max(1.0 - flat**2, 0.0))
-        rim = np.outer(depth * np.cos(ROUND), along) + np.outer(np.sin(ROUND), [-along[1], along[0]])
+        rim = np.outer(depth * np.cos(RIM), along) + np.outer(np.sin(RIM), [-along[1], along[0]])
         return self._flat(centre) + radius * rim
 
     # -- signs --------------------------------------------------------------------------------------------------

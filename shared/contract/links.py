@@ -6,6 +6,7 @@ here is known with both derivatives.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import msgspec
@@ -57,8 +58,7 @@ class Changing:
         bend = -0.5 * square.bend * power**3 + 0.75 * square.rate**2 * power**5
         return self.times(Changing(power, rate, bend))
 
-    def _product(self, other: Changing, rule: object) -> Changing:
-        assert callable(rule)
+    def _product(self, other: Changing, rule: Callable[[Array, Array], Array]) -> Changing:
         both = 2.0 * rule(self.rate, other.rate)
         return Changing(
             rule(self.value, other.value),
@@ -136,7 +136,7 @@ def _moving(place: Changing, axes: tuple[Changing, Changing, Changing]) -> BodyM
         mass=0.0,
         mass_from="parts",
         com=(0.0, 0.0, 0.0),
-        inertia=(0.0,) * 6,
+        inertia=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         colour=INK,
         colour_on_dark=INK_ON_DARK,
     )

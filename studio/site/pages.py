@@ -16,6 +16,7 @@ from render.presets import PRESETS
 from render.view.bundle import bundle, sources_key
 from render.view.document import document, encode, sketch
 from render.view.payload import read_payload
+from shared.contract import is_in_space
 from shared.contract.quantity import counted
 from shared.stage.console import warn
 from shared.stage.files import sources_hash, whole_file, write_bytes
@@ -239,6 +240,9 @@ def _designs(name: str) -> Path:
     """
     out = Out(name)
     path = out.folder / "designs.bin"
+    if is_in_space(out.motion):  # its numbers cannot be moved yet
+        path.unlink(missing_ok=True)
+        return path
     read = out.motion, out.skeleton, mechanism_file(name)
     key = key_of(*read, sources_hash(*SOURCES, ROOT / "render" / "view"), versions("numpy"))
     stage = Stage(out, "designs", key, [path])

@@ -36,6 +36,9 @@ type Compared = PairClearance | Refused | None
 class Pairs:
     """All pieces, and how two of them are compared; ``limit`` and ``reach`` in mm."""
 
+    resolution = RESOLUTION
+    """What is proven of any pair is at most this (mm) below what was measured, apart from errors between samples."""
+
     def __init__(self, pieces: list[MeshPiece], may_touch: list[tuple[str, str]], limit: float, reach: float) -> None:
         """``may_touch``: pairs of pieces, by name, that are not compared."""
         self.pieces, self.limit, self.reach = pieces, limit, reach
@@ -51,7 +54,7 @@ class Pairs:
 
     def within_reach(self, pair: PairClearance) -> Compared:
         """Return the pair, None if it is out of reach."""
-        return pair if min(pair.gap, pair.proven + metres(RESOLUTION)) < metres(self.reach) else None
+        return pair if min(pair.gap, pair.proven + metres(self.resolution)) < metres(self.reach) else None
 
     def is_refused(self, least: Least) -> bool:
         """Return True if a gap is too small, or too little of it is proven."""

@@ -14,9 +14,6 @@ from mechanisms.stages.clearance.pieces import MeshPiece, Tree
 
 # Spans of time: intervals of data.json, neighbours together where there are many, halved where a search needs it.
 
-MOST_SPANS = 400
-"""Spans to begin with; of more intervals, neighbours are taken together."""
-
 
 class Spans:
     """A table that grows.
@@ -30,6 +27,8 @@ class Spans:
     ``turn`` (rad) are how far centre and angle are from the middle's at most.
     """
 
+    begin = 400
+    """Spans to begin with; of more intervals, neighbours are taken together."""
     first: np.ndarray
     last: np.ndarray
     start: np.ndarray
@@ -49,7 +48,7 @@ class Spans:
         self.path = path
         start, width = path.mover.start, path.mover.width
         self.error = path.error
-        self._most = 1 + (len(start) - 1) // MOST_SPANS
+        self._most = 1 + (len(start) - 1) // self.begin
         """Intervals in a span."""
         jumps = np.flatnonzero(np.diff(path.mover.first) != 1) + 1  # two samples at one time: velocities may differ
         firsts = np.unique(np.concatenate([np.arange(0, len(start), self._most), jumps]))

@@ -16,6 +16,11 @@ Every pair of pieces of two bodies is settled by the first of these that suffice
    the plane (outlines.py), and where these do not suffice, of their facets (search.py). For gears, over one pitch
    of their teeth (meshing.py).
 
+In space nothing lies in layers. A turn proves pieces round the axis of a revolute joint, as in the plane. Of others the
+facets are left out that a joint keeps apart by what it keeps: distances from its centre or its axis (space/pairs.py).
+The rest is searched over the motion, with bounds of the relative motion of both bodies (space/path.py); ``resolution``
+is a part of the largest gap that is measured.
+
 What is proven: at every moment of the motion, which between the samples of data.json is the quintic that the film
 shows, the meshes are apart by the ``proven`` gap of clearance.json. It is at most ``resolution`` below the gap that was
 measured, and less what the true motion may be off between two samples there (path.py). Meshes lie within
@@ -82,8 +87,9 @@ def run(name: str, scale: str = "") -> None:
     from mechanisms.stages.clearance.pieces import read_pieces
 
     reach = REACH if at is None else min(max(REACH * at.ratio, REACH_OF_MODELS), REACH)
-    if at is not None and isinstance(motion, Motion):
-        motion = at_scale(motion, at.ratio)
+    if at is not None and not isinstance(motion, Motion):
+        raise UserError(f"{out.title}: there are no models at a scale of mechanisms in space yet; leave --scale out")
+    motion = at_scale(motion, at.ratio) if at is not None and isinstance(motion, Motion) else motion
     pieces = read_pieces(parts, out.parts_folder)
     try:
         checked = check(parts, motion, pieces, stage.key, reach=reach, title=out.title)
@@ -157,7 +163,7 @@ def check(
             refused.append(outcome)
     if refused:
         raise UserError(_refusal(name, [(pair.sweep, pair.least) for pair in refused], limit, motion))
-    return _clearance_of(parts, key, limit, compare.error, pairs, apart)
+    return _clearance_of(parts, key, limit, compare, pairs, apart)
 
 
 def _pairs(parts: Parts, motion: AnyMotion, pieces: list[MeshPiece], limit: float, reach: float) -> Pairs:
@@ -181,17 +187,15 @@ def _pairs(parts: Parts, motion: AnyMotion, pieces: list[MeshPiece], limit: floa
 
 
 def _clearance_of(
-    parts: Parts, key: str, limit: float, error: float, pairs: list[PairClearance], apart: int
+    parts: Parts, key: str, limit: float, compare: Pairs, pairs: list[PairClearance], apart: int
 ) -> Clearance:
-    """Return the document; ``limit`` and ``error`` in mm."""
-    from mechanisms.stages.clearance.search import RESOLUTION
-
+    """Return the document; ``limit`` in mm."""
     return Clearance(
         mechanism=parts.mechanism,
         provenance=Provenance(inputs=key, versions=versions(*PACKAGES)),
         limit=metres(limit),
-        resolution=metres(RESOLUTION),
-        interpolation_error=metres(error),
+        resolution=metres(compare.resolution),
+        interpolation_error=metres(compare.error),
         pairs=sorted(pairs, key=lambda pair: (pair.gap, pair.pieces)),
         apart=apart,
         may_touch=parts.may_touch,

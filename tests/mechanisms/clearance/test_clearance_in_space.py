@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from mbsd.spatial import Mechanism, constant_rate
 from mechanisms.stages.clearance.pieces import MeshPiece
-from mechanisms.stages.clearance.search import RESOLUTION as SHARP
 from mechanisms.stages.clearance.space.path import SpacePath, SpaceRelative
+from mechanisms.stages.clearance.space.search import resolution_of
 from mechanisms.stages.clearance.stage import check
 from mechanisms.stages.solve.space.motion_file import to_motion3
 from shared.contract import Motion, Motion3
@@ -65,8 +65,8 @@ def test_the_gap_of_a_tip_over_a_plate_is_that_of_its_circle(gap: float) -> None
     (pair,) = checked_in_space(*needle_over_plate(gap)).pairs
     assert pair.proof == "motion"
     assert pair.time == pytest.approx(PASS, abs=2e-3)
-    assert 1e3 * pair.gap == pytest.approx(gap, abs=SHARP)
-    assert gap - 2 * SHARP < 1e3 * pair.proven <= 1e3 * pair.gap
+    assert 1e3 * pair.gap == pytest.approx(gap, abs=resolution_of(gap))
+    assert gap - 2 * resolution_of(gap) < 1e3 * pair.proven <= 1e3 * pair.gap
 
 
 def test_a_collision_between_two_samples_is_found() -> None:
@@ -116,7 +116,7 @@ def test_a_machine_in_the_plane_has_the_same_gaps_in_space_however_it_stands() -
     assert {pair.pieces for pair in space.pairs} == {pair.pieces for pair in plane.pairs}
     gaps = {pair.pieces: 1e3 * pair.gap for pair in plane.pairs}
     for pair in space.pairs:
-        assert 1e3 * pair.gap == pytest.approx(gaps[pair.pieces], abs=SHARP)
+        assert 1e3 * pair.gap == pytest.approx(gaps[pair.pieces], abs=resolution_of(gaps[pair.pieces]))
 
 
 def turning(time: np.ndarray, axis: np.ndarray, rate: float, circle: float) -> SpacePath:

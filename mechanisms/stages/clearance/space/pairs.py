@@ -17,7 +17,7 @@ from mechanisms.stages.clearance.pairs import Compared, Pairs, Refused, pair_of
 from mechanisms.stages.clearance.pieces import MeshPiece
 from mechanisms.stages.clearance.search import Least, nearest
 from mechanisms.stages.clearance.space.path import SpacePath, paths_in_space, seen
-from mechanisms.stages.clearance.space.search import SpacePiece, SpaceSearch, SpaceSweep
+from mechanisms.stages.clearance.space.search import SpacePiece, SpaceSearch, SpaceSweep, resolution_of
 from mechanisms.stages.clearance.turn import nearest_boxes, ring_boxes, turn_gap
 from mechanisms.stages.parts_files import TOLERANCE
 from shared.contract import Motion3, Parts
@@ -75,6 +75,7 @@ class SpacePairs(Pairs):
     """Pieces of bodies that move in space."""
 
     def __init__(self, parts: Parts, motion: Motion3, pieces: list[MeshPiece], limit: float, reach: float) -> None:
+        self.resolution = resolution_of(reach)
         whole = [SpacePiece(piece.body, piece.name, piece.triangles) for piece in pieces]
         super().__init__(list[MeshPiece](whole), parts.pieces_may_touch, limit, reach)
         self.where = paths_in_space(with_links(motion, parts))

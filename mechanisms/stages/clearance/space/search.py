@@ -9,11 +9,18 @@ from functools import cached_property
 import numpy as np
 
 from mechanisms.stages.clearance.pieces import MeshPiece, halved, leaf_order, longest_in
-from mechanisms.stages.clearance.search import Search, Spans, Sweep
+from mechanisms.stages.clearance.search import RESOLUTION, Search, Spans, Sweep
 from mechanisms.stages.clearance.space.path import SpaceRelative
 
+FINE = 0.02
+"""Part of a gap to which it is searched, where that is more than the resolution in the plane."""
 SPHERE = 400
 """Directions in which the depth of an overlap is measured."""
+
+
+def resolution_of(gap: float) -> float:
+    """Return how much less than a ``gap`` may be proven (mm)."""
+    return max(RESOLUTION, FINE * gap)
 
 
 class SpaceTree:
@@ -79,6 +86,8 @@ class SpacePiece(MeshPiece):
 class SpaceSpans(Spans):
     """As :class:`Spans`: ``ends`` (n, 3, 3) are the centre's places, ``turned`` (n, 3, 3, 3) the rotations there."""
 
+    begin = 32
+
     def _poses(
         self, places: Sequence[tuple[np.ndarray, np.ndarray]], push: np.ndarray, spin: np.ndarray
     ) -> dict[str, np.ndarray]:
@@ -121,6 +130,11 @@ class SpaceSearch(Search):
         """``offset`` (3,): the origin of ``still`` in its body's frame (mm)."""
         self.a, self.b, self.offset = still, mover, offset
         self._begin(SpaceSpans(path))
+
+    @property
+    def resolution(self) -> float:
+        """What is proven is at most this (mm) below the least gap that is known by then."""
+        return resolution_of(self.best)
 
     def _apart(self, rows: np.ndarray) -> np.ndarray:
         """Return (n,) the gap (mm) of the two groups' spheres at the middle of the span."""

@@ -18,12 +18,11 @@ from mbsd.equations.assembly import residual_and_jacobian, tabulate
 from mbsd.kinematics import newton
 from mbsd.kinematics.change_points.assemblies import Solver
 from mbsd.kinematics.change_points.passages import NEAR_END, Passage, Passages
-from mbsd.kinematics.elimination import Elimination, plan
+from mbsd.kinematics.elimination import Elimination
 from mbsd.kinematics.groups.carried import COS, DOUBTED, OPEN, SOLVED
 from mbsd.kinematics.groups.groups import Groups
 from mbsd.kinematics.groups.solve import SOLVED_CLOSE, Poses, solve_groups
-from mbsd.kinematics.pose.mobility import best_rows
-from mbsd.kinematics.prepared import Prepared, sample_jacobians
+from mbsd.kinematics.prepared import Prepared
 from mbsd.kinematics.steps import Steps
 
 ZERO_LENGTH = 1e-12
@@ -34,8 +33,17 @@ class March:
     """A motion at the times asked for, and at all steps on the way."""
 
     def __init__(
-        self, q: np.ndarray, v: np.ndarray, a: np.ndarray, steps: Steps, closed: bool, passages: Sequence[Passage] = ()
+        self,
+        q: np.ndarray,
+        v: np.ndarray,
+        a: np.ndarray,
+        steps: Steps,
+        closed: bool,
+        passages: Sequence[Passage] = (),
+        switch_at: Sequence[float] | np.ndarray = (),
     ) -> None:
+        self.switch_at = switch_at
+        """Times (s) at which it goes on to the other assembly."""
         self.steps, self.closed = steps, closed
         """``closed``: solved in closed form."""
         self.passages = passages
@@ -89,7 +97,7 @@ def march_along(ready: Prepared, times: np.ndarray, switch_at: Sequence[float] |
     q, v, a, passages = _newton(ready, steps, switches)
     if out_of_reach is not None:
         raise error_out_of_reach(ready.packed, out_of_reach)
-    return March(q, v, a, steps, False, passages)
+    return March(q, v, a, steps, False, passages, switches)
 
 
 def _near_ends(ready: Prepared, times: np.ndarray) -> March | None:
@@ -188,12 +196,10 @@ def _newton(
         if not passages.passages and steps.follow_laws():
             arrays, first, chosen = _arrays(ready.q0, len(steps.times), sequence), 0, 0
             continue
-        if ready.mobility.redundant_rows and index - 1 > chosen:
-            residual_and_jacobian(packed.system, q[index - 1], steps.drives[index - 1], packed.ws)
-            kept = best_rows(packed, sequence.rows)
-            if kept is not None:
-                sequence, factors = plan(sample_jacobians(packed), kept, packed.system.row_body)
-                passages.solver = Solver(packed, sequence, factors)
+        if ready.mobility.redundant_rows and (index - 1 > chosen or sequence is ready.sequence):
+            solver = passages.solver.exchanged(q[index - 1], steps.drives[index - 1])
+            if solver is not None:
+                passages.solver, sequence, factors = solver, solver.sequence, solver.factors
                 first = chosen = index - 1
                 arrays = *arrays[:4], np.zeros((len(steps.times), len(sequence.ends)))
                 continue
@@ -208,7 +214,7 @@ def _newton(
         first = index
     q, v, a, residual, determinant = arrays
     if len(steps.times):
-        passages.pass_ends(q, v, determinant)
+        passages.pass_ends(q, v, determinant, bool(ready.mobility.redundant_rows))
         refuse_disagreeing(packed, steps.times, residual, q, steps.drives)
     passages.refuse_missed_switches()
     return *passages.fill(q, v, a), passages.passages

@@ -187,7 +187,7 @@ class _Drawing:
         return max(length, 0.25) * unit, np.array([-unit[1], unit[0]])
 
     def _spring(self, start: End, end: End) -> None:
-        a, b = (self._flat(self._place(one)) for one in (start, end))
+        a, b = (self._flat(self._place(place)) for place in (start, end))
         along = b - a
         across = np.array([-along[1], along[0]]) / max(float(np.linalg.norm(along)), 1e-12)
         parts = [0.0, 0.15, *np.linspace(0.18, 0.82, 9), 0.85, 1.0]
@@ -211,7 +211,7 @@ class _Drawing:
         self._add(circle, ink, order, 1.6, fill=fill, alpha=1.0, closed=True, carrier=Carrier("place", (end,)))
 
     def _line(self, start: End, end: End, ink: str) -> None:
-        points = np.array([self._flat(self._place(one)) for one in (start, end)])
+        points = np.array([self._flat(self._place(place)) for place in (start, end)])
         self._add(points, ink, 1.5, 2.6, carrier=Carrier("line", (start, end)))
 
     def _add(

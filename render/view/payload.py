@@ -118,7 +118,7 @@ def payload(motion: AnyMotion, moving: Moving, shot: Shot | None = None, arrows:
 
 
 def _things(motion: Motion, quiet: Mapping[str, float]) -> dict[str, Any]:
-    """Return what moves in the plane, and what is told of it."""
+    """Return bodies, joints and all else that a motion in the plane has of its own."""
     return {
         "bodies": {name: _body(body, quiet) for name, body in motion.bodies.items()},
         "joints": {name: _joint(motion, joint, quiet) for name, joint in motion.joints.items()},

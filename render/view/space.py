@@ -1,4 +1,4 @@
-"""What moves in space on a page: bodies, joints, drivers, points and forces of data.json version 4.
+"""Payload of a page in space: bodies, joints, drivers, points and forces of data.json version 4.
 
 As payload.py has them in the plane, but:
 

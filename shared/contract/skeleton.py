@@ -81,7 +81,7 @@ class End(_Strict, kw_only=True):
     x: float = 0.0
     y: float = 0.0
     z: float | msgspec.UnsetType = msgspec.UNSET
-    """Of mechanisms in space alone, whose ends are seen in the view of the skeleton."""
+    """Third coordinate, in space alone; such ends are seen in the view of the skeleton."""
 
 
 class Carrier(_Strict, kw_only=True):

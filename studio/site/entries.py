@@ -177,7 +177,7 @@ def entry_of(name: str) -> Entry:
     parts = read_parts(out.parts, name) if out.parts.is_file() else None
     clearance = current_clearance(out, parts, "site")
     text = description(name)
-    found = insights(motion)[:INSIGHTS] if isinstance(motion, Motion) else []
-    shows = [each.sentence() for each in found]
+    telling = insights(motion)[:INSIGHTS] if isinstance(motion, Motion) else []
+    shows = [each.sentence() for each in telling]
     known = facts(motion, parts, clearance)
     return Entry(name, title_of(name), sentences(text), known, purposes(name, text, motion), insights=shows)

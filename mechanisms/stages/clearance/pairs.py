@@ -37,7 +37,7 @@ class Pairs:
     """All pieces, and how two of them are compared; ``limit`` and ``reach`` in mm."""
 
     resolution = RESOLUTION
-    """What is proven of any pair is at most this (mm) below what was measured, apart from errors between samples."""
+    """Largest difference (mm) of measured and proven gaps, apart from errors between samples."""
 
     def __init__(self, pieces: list[MeshPiece], may_touch: list[tuple[str, str]], limit: float, reach: float) -> None:
         """``may_touch``: pairs of pieces, by name, that are not compared."""

@@ -169,16 +169,16 @@ def test_the_skeleton_of_the_page_is_carried_to_where_it_is_drawn(made: Out) -> 
     """Lines lie between the ends that carry them, which the page moves; all else is recorded over the motion."""
     skeleton, film = read_skeleton(made.skeleton), read_film(made)
     assert skeleton.moving is not None
-    carried = [one for one in skeleton.moving.strokes if one.carrier.kind == "line"]
-    assert {one.carrier.ends[0].body for one in carried} == {"input", "middle", "output"}
+    carried = [stroke for stroke in skeleton.moving.strokes if stroke.carrier.kind == "line"]
+    assert {stroke.carrier.ends[0].body for stroke in carried} == {"input", "middle", "output"}
     first = film.poses.time[0]
-    for one in carried:
+    for stroke in carried:
         ends = [
             film.poses.carried(end.body, np.array([[end.x, end.y, end.z]], float), np.array([first]))[0]
-            for end in one.carrier.ends
+            for end in stroke.carrier.ends
         ]
-        np.testing.assert_allclose(np.reshape(one.stroke.points, (-1, 2)), ends @ np.array(VIEW).T, atol=1e-6)
-    assert all(len(one.shapes) == len(skeleton.moving.times) for one in skeleton.moving.strokes if one.shapes)
+        np.testing.assert_allclose(np.reshape(stroke.stroke.points, (-1, 2)), ends @ np.array(VIEW).T, atol=1e-6)
+    assert all(len(stroke.shapes) == len(skeleton.moving.times) for stroke in skeleton.moving.strokes if stroke.shapes)
 
 
 def test_every_period_has_the_same_states_and_the_camera_holds_what_moves(made: Out) -> None:

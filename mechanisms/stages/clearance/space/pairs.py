@@ -35,7 +35,7 @@ type Frame = tuple[np.ndarray, np.ndarray]
 
 @dataclass(frozen=True)
 class Kept:
-    """What the motion of two bodies keeps: a centre, an axis, or lines along it."""
+    """Centre, axis, or lines along it that the motion of two bodies keeps."""
 
     frames: dict[str, Frame]
     turns: bool

@@ -93,7 +93,7 @@ class _Pair:
     turn: np.ndarray
     turn_square: np.ndarray
     way: np.ndarray
-    """Of the origin's place, times ``way_square``, raised to the degree of a point's."""
+    """Place of the origin times ``way_square``, raised to the degree of a point's."""
     way_square: np.ndarray
     spin: np.ndarray
 

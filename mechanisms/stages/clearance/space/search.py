@@ -133,7 +133,7 @@ class SpaceSearch(Search):
 
     @property
     def resolution(self) -> float:
-        """What is proven is at most this (mm) below the least gap that is known by then."""
+        """Largest difference (mm) of the proven gap and the least one that is known by then."""
         return resolution_of(self.best)
 
     def _apart(self, rows: np.ndarray) -> np.ndarray:

@@ -284,11 +284,15 @@ def _with_common_pins(axes: Axes) -> Axes:
 
 
 def far_bodies(pieces: Sequence[MeshPiece], where: Mapping[str, BodyPath], reach: float) -> set[frozenset[str]]:
-    """Return pairs of bodies whose pieces are ``reach`` (mm) apart or more as long as there are both."""
+    """Return pairs of bodies whose pieces are ``reach`` (mm) apart or more as long as there are both.
+
+    Pieces and paths are those in the plane, or those in space.
+    """
     radius: dict[str, float] = {}
     for piece in pieces:
         radius[piece.body] = max(radius.get(piece.body, 0.0), piece.reach)
-    places = {body: where[body].control[:, :, :2] for body in radius}
+    axes = max((len(piece.centre) for piece in pieces), default=2)
+    places = {body: where[body].control[:, :, :axes] for body in radius}
     boxes = {body: (place.min(axis=1), place.max(axis=1)) for body, place in places.items()}
     room = {body: r + where[body].interpolation_error(r) for body, r in radius.items()}
     pairs = set()
@@ -296,7 +300,7 @@ def far_bodies(pieces: Sequence[MeshPiece], where: Mapping[str, BodyPath], reach
         both = slice(min(len(room[a]), len(room[b])))
         (low_a, high_a), (low_b, high_b) = ([side[both] for side in boxes[body]] for body in (a, b))
         gap = np.maximum(np.maximum(low_b - high_a, low_a - high_b), 0.0)
-        if (np.hypot(gap[:, 0], gap[:, 1]) - room[a][both] - room[b][both] >= reach).all():
+        if (np.linalg.norm(gap, axis=1) - room[a][both] - room[b][both] >= reach).all():
             pairs.add(frozenset((a, b)))
     return pairs
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from mechanisms.stages.clearance.outlines import FIRST
 from mechanisms.stages.clearance.pairs import Compared, Pairs, Refused, pair_of
+from mechanisms.stages.clearance.path import error_of, far_bodies
 from mechanisms.stages.clearance.pieces import MeshPiece
 from mechanisms.stages.clearance.search import Least, nearest
 from mechanisms.stages.clearance.space.path import SpacePath, paths_in_space, seen
@@ -80,11 +81,15 @@ class SpacePairs(Pairs):
         super().__init__(list[MeshPiece](whole), parts.pieces_may_touch, limit, reach)
         self.where = paths_in_space(with_links(motion, parts))
         self.kept = kept_by_joints(motion, parts, self.where)
+        self.far = far_bodies(whole, self.where, reach)
 
     def compared(self, first: MeshPiece, second: MeshPiece) -> Compared:
         """Return how near two pieces come."""
         assert isinstance(first, SpacePiece)
         assert isinstance(second, SpacePiece)
+        if frozenset((first.body, second.body)) in self.far:
+            self.error = max(self.error, error_of(first, second, self.where))
+            return None
         sweep = SpaceSweep(first, second, self.where[first.body], self.where[second.body])
         self.error = max(self.error, float(sweep.error.max(initial=0.0)))
         if sweep.is_apart(self.reach):

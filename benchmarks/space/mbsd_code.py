@@ -14,7 +14,7 @@ from mbsd.kinematics.steps import Steps
 from mbsd.spatial import Mechanism, constant_rate
 from mbsd.spatial.dynamics.simulate import Run
 from mbsd.spatial.kinematics.prepared import prepare as swept
-from mbsd.spatial.kinematics.sweep import march
+from mbsd.spatial.kinematics.sweep import march_along
 
 VERSION = mbsd.__version__
 TOLERANCES = dict(zip(space.PROBLEMS[:-1], (3.5e-6, 5e-5, 3e-7, 2e-5, 5e-4), strict=True))
@@ -99,7 +99,7 @@ def prepare(problem: str) -> tuple[Callable[[], Callable[[], Any]], Callable[[An
 
         def sweep() -> Callable[[], Any]:
             ready.packed.ws.guess[:] = ready.turns
-            return lambda: march(ready, Steps(same_fields, times), False)
+            return lambda: march_along(ready, Steps(same_fields, times), False, np.zeros(0))
 
         return sweep, error
     ends, tolerance = np.array([0.0, space.DURATION[problem]]), TOLERANCES[problem]

@@ -55,17 +55,19 @@ class Mechanism(Building):
         duration: float | None = None,
         steps: int = 360,
         times: Sequence[float] | np.ndarray | None = None,
+        switch_at: Sequence[float] | np.ndarray = (),
     ) -> Solution:
         """Solve the driven motion: poses, velocities, accelerations, reactions, driver efforts.
 
         ``steps`` equal steps over ``duration`` seconds, both ends included; by default over the common period of the
         laws of the drivers. ``times`` (s), rising, replaces both. Steps in between keep the motion on its assembly
-        branch. Raises AssemblyError where the joints do not close at the start, MobilityError where drivers and
-        freedoms do not match, SingularPoseError and BranchError where the motion cannot go on.
+        branch. Change points are passed on the smooth continuation; at those of the times ``switch_at`` (s) the motion
+        goes on to the other assembly. Raises AssemblyError where the joints do not close at the start, MobilityError
+        where drivers and freedoms do not match, SingularPoseError and BranchError where the motion cannot go on.
         """
         from mbsd.spatial.kinematics.sweep import sweep
 
-        return sweep(self, duration, steps, times)
+        return sweep(self, duration, steps, times, switch_at)
 
     def simulate(
         self,

@@ -12,7 +12,7 @@ sol.energy.kinetic, .potential
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
@@ -37,7 +37,7 @@ from mbsd.spatial.results.frames import (
     slides_between,
     turns_between,
 )
-from mbsd.spatial.results.reactions import residuals, with_reactions
+from mbsd.spatial.results.reactions import Beside, residuals, with_reactions
 from mbsd.spatial.results.views import FrameView, JointView
 
 if TYPE_CHECKING:
@@ -63,6 +63,8 @@ class Solution(Suggesting):
     """Laws of drivers and forces, as kernels read them."""
     starts: Mapping[str, float] = field(repr=False)
     """Turns (rad) and slides (m) that start_near gave."""
+    beside: Sequence[Beside] = field(default=(), repr=False)
+    """Motions beside change points."""
     inserted_steps: int = 0
     """Steps added between outputs to stay on the branch."""
     steps: int = 0
@@ -104,7 +106,7 @@ class Solution(Suggesting):
     @cached_property
     def _whole(self) -> Any:
         """The motion with multipliers and wrenches, which are found when they are first asked for."""
-        return with_reactions(self.packed, self.laws, self.motion, self.mobility.redundant_rows)
+        return with_reactions(self.packed, self.laws, self.motion, self.mobility.redundant_rows, self.beside)
 
     def body(self, name: str) -> FrameView:
         """Return the motion of a body's frame."""

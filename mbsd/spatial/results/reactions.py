@@ -1,4 +1,4 @@
-"""Reactions along a motion, of least norm where joints repeat each other, and what its equations leave open.
+"""Reactions along a motion, of least norm where joints repeat each other, and its residuals.
 
     J^T lam = Q - M a
     J^T = Q R   =>   lam = R^-1 Q^T (Q - M a)         rows are independent

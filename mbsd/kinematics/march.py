@@ -18,13 +18,11 @@ from mbsd.equations.assembly import residual_and_jacobian, tabulate
 from mbsd.kinematics import newton
 from mbsd.kinematics.change_points.assemblies import Solver
 from mbsd.kinematics.change_points.passages import NEAR_END, Passage
-from mbsd.kinematics.elimination import plan
 from mbsd.kinematics.groups.carried import COS, DOUBTED, OPEN, SOLVED
 from mbsd.kinematics.groups.groups import Groups
 from mbsd.kinematics.groups.solve import SOLVED_CLOSE, Poses, solve_groups
 from mbsd.kinematics.newton_march import NewtonMarch
-from mbsd.kinematics.pose.mobility import best_rows
-from mbsd.kinematics.prepared import Prepared, sample_jacobians
+from mbsd.kinematics.prepared import Prepared
 from mbsd.kinematics.steps import Steps
 
 ZERO_LENGTH = 1e-12
@@ -35,8 +33,17 @@ class March:
     """A motion at the times asked for, and at all steps on the way."""
 
     def __init__(
-        self, q: np.ndarray, v: np.ndarray, a: np.ndarray, steps: Steps, closed: bool, passages: Sequence[Passage] = ()
+        self,
+        q: np.ndarray,
+        v: np.ndarray,
+        a: np.ndarray,
+        steps: Steps,
+        closed: bool,
+        passages: Sequence[Passage] = (),
+        switch_at: Sequence[float] | np.ndarray = (),
     ) -> None:
+        self.switch_at = switch_at
+        """Times (s) at which it goes on to the other assembly."""
         self.steps, self.closed = steps, closed
         """``closed``: solved in closed form."""
         self.passages = passages
@@ -188,15 +195,6 @@ class _NewtonMarch(NewtonMarch):
         packed.specials.check()
         return out
 
-    def choose_rows(self, row: int) -> bool:
-        """Take rows that depend less on each other at a solved step; returns False if those in use are good."""
-        packed = self.ready.packed
-        residual_and_jacobian(packed.system, self.arrays["q"][row], self.steps.drives[row], packed.ws)
-        kept = best_rows(packed, self.sequence.rows)
-        if kept is not None:
-            self.sequence, self.factors = plan(sample_jacobians(packed), kept, packed.system.row_body)
-        return kept is not None
-
     def error_of_step(self, status: int, index: int) -> Exception:
         """Return the error for a refused step that nothing cures."""
         steps, arrays = self.steps, self.arrays
@@ -211,7 +209,7 @@ def _newton(ready: Prepared, steps: Steps, switch_at: np.ndarray) -> March:
         refuse_disagreeing(ready.packed, steps.times, march.arrays["residual"], march.arrays["q"], steps.drives)
     march.fill()
     q, v, a = (march.arrays[name] for name in march.poses)
-    return March(q, v, a, steps, False, march.passages.passages)
+    return March(q, v, a, steps, False, march.passages.passages, switch_at)
 
 
 RUNAWAY = 30.0

@@ -31,6 +31,7 @@ class NewtonMarch(ABC):
         """``ready``: Prepared, of the plane or of space. ``switch_at``: see Passages."""
         self.ready, self.steps = ready, steps
         self.sequence, self.factors = ready.sequence, ready.factors
+        self._repeats = bool(ready.mobility.redundant_rows)
         self.passages = Passages(self.solver(), steps, switch_at)
         self.arrays = self.room()
         """By name (T, ...); among them ``poses``, residual (T,) and determinant (T, d)."""
@@ -50,12 +51,13 @@ class NewtonMarch(ABC):
         """Solve the steps from ``first`` on, by rows chosen at ``chosen``; returns status and index of the kernel."""
 
     @abstractmethod
-    def choose_rows(self, row: int) -> bool:
-        """Take rows that depend less on each other at a solved step; returns False if those in use are good."""
-
-    @abstractmethod
     def error_of_step(self, status: int, index: int) -> Exception:
         """Return the error for a refused step that nothing cures."""
+
+    def exchange(self, solver: Solver) -> None:
+        """Go on with the rows of a solver, which depend less on each other than those in use."""
+        self.passages.solver, self.sequence, self.factors = solver, solver.sequence, solver.factors
+        self.arrays["determinant"] = np.zeros((len(self.steps.times), len(self.sequence.ends)))
 
     def is_solved(self, status: int) -> bool:
         """Return True if a step was refused for its rows alone: where these are the best, its pose is as good."""
@@ -78,11 +80,12 @@ class NewtonMarch(ABC):
             if not self.passages.passages and steps.follow_laws():
                 self.arrays, first, chosen = self.room(), 0, 0
                 continue
-            if self.ready.mobility.redundant_rows and index - 1 > chosen and self.choose_rows(index - 1):
-                self.passages.solver = self.solver()
-                self.arrays["determinant"] = np.zeros((len(steps.times), len(self.sequence.ends)))
-                first = chosen = index - 1
-                continue
+            if self._repeats and (index - 1 > chosen or self.sequence is self.ready.sequence):
+                solver = self.passages.solver_at(index - 1, self.arrays[self.poses[0]])
+                if solver is not None:
+                    self.exchange(solver)
+                    first = chosen = index - 1
+                    continue
             if self.is_solved(status):
                 first = index
                 continue
@@ -100,7 +103,7 @@ class NewtonMarch(ABC):
         """Fill poses near change points, also near those that the motion does not reach. Raises ModelError."""
         if len(self.steps.times):
             q, rate, _ = (self.arrays[name] for name in self.poses)
-            self.passages.pass_ends(q, rate, self.arrays["determinant"])
+            self.passages.pass_ends(q, rate, self.arrays["determinant"], self._repeats)
         self.passages.refuse_missed_switches()
         self.filled = self.passages.fill(self.arrays, self.poses)
         for rows in self.filled:

@@ -345,3 +345,28 @@ def test_loops_that_pass_together_all_go_on() -> None:
 def test_a_start_at_a_change_point_raises_an_error() -> None:
     with pytest.raises(SingularPoseError, match="start pose"):
         linkage("parallelogram", 180.0).sweep(1.0)
+
+
+def three_rods(turn: float) -> Solution:
+    """Return the motion of a deck on three alike rods from 1.1 rad, in a world turned by an angle (rad)."""
+    m = Mechanism("three rods", gravity=(G * math.sin(turn), -G * math.cos(turn)))
+    c, s = math.cos(turn), math.sin(turn)
+    deck = m.body("deck", mass=3.0, com=(0.0, 0.1), inertia=0.2)
+    rods = [m.bar(f"rod{k}", 0.2, mass=1.0) for k in range(3)]
+    for rod, x in zip(rods, (0.0, 0.33, 0.13), strict=True):
+        m.revolute(f"foot of {rod.name}", m.ground.at(c * x, s * x), rod.start)
+        m.revolute(f"head of {rod.name}", deck.at(x, 0), rod.end)
+    m.start_near(deck=math.degrees(turn), **{rod.name: math.degrees(1.1 + turn) for rod in rods})
+    m.drive_angle("motor", rods[0], cycloidal(-2.0, 1.0, start=1.1 + turn))
+    return m.sweep(1.0, steps=60)
+
+
+@pytest.mark.parametrize("beside", [-0.02, 1e-6, 0.017, 0.1])
+@pytest.mark.parametrize("quarter", [0.0, 0.5 * math.pi])
+def test_rods_that_repeat_others_have_efforts_where_rows_of_some_are_singular(quarter: float, beside: float) -> None:
+    """With one row of the third rod, but not with both, there is a toggle where it is along an axis of the world."""
+    known, sol = three_rods(0.0), three_rods(quarter - 1.1 + beside)
+    assert sol.is_defined.all()
+    assert sol.stats.position_residual < 1e-12
+    torque = known.driver("motor").torque
+    assert np.allclose(sol.driver("motor").torque, torque, rtol=0.0, atol=1e-9 * np.abs(torque).max())

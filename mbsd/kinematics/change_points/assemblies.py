@@ -36,7 +36,9 @@ from mbsd.arrays.efforts_beside import lagrange
 from mbsd.arrays.packing import Packed
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics import newton
-from mbsd.kinematics.elimination import Elimination, Factors
+from mbsd.kinematics.elimination import Elimination, Factors, plan
+from mbsd.kinematics.pose.mobility import best_rows
+from mbsd.kinematics.prepared import sample_jacobians
 
 APART = np.array([1.0, 1.3, 1.6, 1.9, 2.2, 2.5])
 """Distances of the poses beside a change point, in ``WAYS``."""
@@ -120,6 +122,14 @@ class Solver:
         )  # fmt: skip
         packed.specials.check()
         return (q, sign * v, a, determinant) if status == newton.DONE else None
+
+    def exchanged(self, q: np.ndarray, drive: np.ndarray) -> Solver | None:
+        """Return a solver with rows that are further from dependent at a pose q (3 nb,); None if there are none."""
+        residual_and_jacobian(self.packed.system, q, drive, self.packed.ws)
+        kept = best_rows(self.packed, self.sequence.rows)
+        if kept is None:
+            return None
+        return Solver(self.packed, *plan(sample_jacobians(self.packed), kept, self.packed.system.row_body))
 
     def extent(self, change: np.ndarray) -> float:
         """Return largest part of changes (..., 3 nb) of poses, lengths in sizes."""

@@ -133,13 +133,22 @@ class Passages:
         self.passages.append(passage)
         return passage
 
-    def pass_ends(self, q: np.ndarray, v: np.ndarray, determinant: np.ndarray) -> None:
-        """Find change points that the motion does not reach, but comes near to with its first or last pose."""
+    def solver_at(self, row: int, q: np.ndarray) -> Solver | None:
+        """Return a solver with rows that depend less on each other at a step of q (T, 3 nb), None if there is none."""
+        self.solver.start_from(row)
+        return self.solver.exchanged(q[row], self.steps.drives[row])
+
+    def pass_ends(self, q: np.ndarray, v: np.ndarray, determinant: np.ndarray, is_redundant: bool = False) -> None:
+        """Find change points that the motion does not reach, but comes near to with its first or last pose.
+
+        Where joints repeat others, rows that alone are singular near there are exchanged before.
+        """
         largest = np.abs(determinant).max(axis=0, initial=0.0)
         for row in dict.fromkeys((0, len(q) - 1)):
             time = self.steps.times[row]
             is_known = any(passage.start <= time <= passage.end for passage in self.passages)
             if not is_known and (len(q) == 1 or (np.abs(determinant[row]) < NEAR_END * largest).any()):
+                self.solver = (self.solver_at(row, q) if is_redundant else None) or self.solver
                 meeting = self._meeting(row, q[row], v[row])
                 if meeting is not None:
                     self.passages.append(self._in_time(row, *meeting))

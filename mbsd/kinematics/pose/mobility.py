@@ -27,6 +27,8 @@ from mbsd.results.views import Mobility
 
 BETTER = 4.0
 """Rows are exchanged for others whose least singular value is this many times larger."""
+CLEARER = 30.0
+"""The same before a motion begins: rows that are near a toggle of their own are left for others."""
 
 
 _MOBILITY: Kept[Mobility] = Kept()
@@ -151,7 +153,18 @@ def _chosen(packed: Packed, q: np.ndarray, time: float, joints: Mobility) -> lis
             f"{packed.name}: the start pose at t = {time:.6g} s is singular (a toggle or change point): "
             "the drivers do not fix the motion here. Start a little before or after it, or drive another body."
         )
-    return kept
+    return clear_rows(packed, q, kept)
+
+
+def clear_rows(packed: Packed, q: np.ndarray, kept: list[int]) -> list[int]:
+    """Return ``kept`` rows at q (3 nb,), or others in their place where they alone are near a toggle.
+
+    Joints that repeat each other let a choice of rows be singular at a pose at which all of them are not.
+    """
+    if not 0 < len(kept) < len(packed.ws.phi):
+        return kept
+    clear = better_rows(scaled_jacobian(packed, q), kept, CLEARER)
+    return kept if clear is None else clear.tolist()
 
 
 def best_rows(packed: Packed, known: np.ndarray) -> np.ndarray | None:

@@ -15,6 +15,7 @@ from mbsd.base.errors import AssemblyError, BranchError, SingularPoseError
 from mbsd.base.quantity import written
 from mbsd.kinematics.change_points import assemblies
 from mbsd.kinematics.change_points.passages import Passage
+from mbsd.kinematics.elimination import Elimination, Factors
 from mbsd.kinematics.march import REDUNDANT_GAP, RUNAWAY, driver_values
 from mbsd.kinematics.newton import BRANCH_DOUBT, DONE
 from mbsd.kinematics.newton_march import NewtonMarch
@@ -55,14 +56,22 @@ def motion_of(
 class SpaceSolver(assemblies.Solver):
     """Newton-Raphson along ways of the drivers past a change point."""
 
-    def __init__(self, march: SpaceMarch) -> None:
-        super().__init__(march.ready.packed, march.sequence, march.factors)
+    def __init__(self, march: SpaceMarch, sequence: Elimination, factors: Factors) -> None:
+        super().__init__(march.ready.packed, sequence, factors)
         self._march, self._laws = march, pack_laws(())
         self._turns = march.ready.turns
 
     def start_from(self, row: int) -> None:
         """Count turns from those of a step."""
         self._turns = self._march.arrays["turn"][row].copy()
+
+    def exchanged(self, q: np.ndarray, drive: np.ndarray) -> SpaceSolver | None:
+        """Return a solver with rows that are further from dependent at a pose q (3 + 7 n,); None if there are none."""
+        del drive
+        packed: Any = self.packed
+        packed.ws.guess[:] = self._turns
+        kept = better_rows_at(packed, q, self.sequence.rows.astype(np.int64))
+        return None if kept is None else SpaceSolver(self._march, *planned(packed, kept))
 
     def walk(self, way: assemblies.Way, pose: np.ndarray, p: np.ndarray) -> tuple[np.ndarray, ...] | None:
         """Return q, dq/dp, d2q/dp2 (P, 3 + 7 n) and determinants (P, d); see the plane."""
@@ -116,7 +125,7 @@ class SpaceMarch(NewtonMarch):
 
     def solver(self) -> SpaceSolver:
         """Return Newton-Raphson with the rows in use, for passages."""
-        return SpaceSolver(self)
+        return SpaceSolver(self, self.sequence, self.factors)
 
     def motion(self) -> newton.DrivenMotion:
         """Return the motion as kernels read it."""
@@ -133,14 +142,10 @@ class SpaceMarch(NewtonMarch):
             part,
         )  # fmt: skip
 
-    def choose_rows(self, row: int) -> bool:
-        """Take rows that depend less on each other at a solved step; returns False if those in use are good."""
-        self.packed.ws.guess[:] = self.arrays["turn"][row]
-        kept = better_rows_at(self.packed, self.arrays["q"][row], self.sequence.rows.astype(np.int64))
-        if kept is not None:
-            self.sequence, self.factors = planned(self.packed, kept)
-            self._part = NEARER
-        return kept is not None
+    def exchange(self, solver: assemblies.Solver) -> None:
+        """Go on with the rows of a solver, which depend less on each other than those in use."""
+        super().exchange(solver)
+        self._part = NEARER
 
     def is_solved(self, status: int) -> bool:
         """Return True if a step was refused because its rows come near to depend on each other."""

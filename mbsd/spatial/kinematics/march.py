@@ -10,7 +10,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from mbsd.arrays.laws import pack_laws
 from mbsd.base.errors import AssemblyError, BranchError, SingularPoseError
 from mbsd.base.quantity import written
 from mbsd.kinematics.change_points import assemblies
@@ -58,7 +57,7 @@ class SpaceSolver(assemblies.Solver):
 
     def __init__(self, march: SpaceMarch, sequence: Elimination, factors: Factors) -> None:
         super().__init__(march.ready.packed, sequence, factors)
-        self._march, self._laws = march, pack_laws(())
+        self._march = march
         self._turns = march.ready.turns
 
     def start_from(self, row: int) -> None:
@@ -83,7 +82,16 @@ class SpaceSolver(assemblies.Solver):
         motion = motion_of(packed, sign * p, drives, np.full(drives.shape[1], np.inf), arrays)
         unguarded = len(p) - 1
         status, _ = newton.sweep(
-            packed.system, self._laws, self.sequence, self.factors, packed.ws, packed.size, motion, 0, unguarded, 0.0
+            packed.system,
+            self._march.ready.laws,
+            self.sequence,
+            self.factors,
+            packed.ws,
+            packed.size,
+            motion,
+            0,
+            unguarded,
+            0.0,
         )
         return (motion.q, sign * motion.dq, motion.ddq, motion.determinant) if status == DONE else None
 
@@ -175,7 +183,7 @@ class SpaceMarch(NewtonMarch):
 
     def balance(self, passed: np.ndarray) -> None:
         """Find reactions at steps whose poses are those of a passage, but for the times ``passed`` (s)."""
-        rows = np.unique(np.concatenate([np.zeros(0, np.int64), *self.filled]))
+        rows = np.unique(np.concatenate(self.filled))
         rows = rows[~np.isin(self.steps.times[rows], passed)]
         self._solve_alone(self.arrays, self.steps.times, self.steps.drives, rows)
 

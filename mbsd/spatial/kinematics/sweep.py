@@ -39,7 +39,8 @@ def sweep(
         Beside(side, determinant_of(passage, np.append(side.nodes, side.rows)), march.beside(passage, side.nodes))
         for passage, side in sides
     ]
-    march.balance(np.concatenate([np.zeros(0), *(side.rows for _, side in sides)]))
+    if march.filled:
+        march.balance(np.concatenate([np.zeros(0), *(side.rows for _, side in sides)]))
     ready.packed.check_callbacks(accepted=False)
     _refuse_jammed(ready, motion)
     return Solution(

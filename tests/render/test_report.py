@@ -330,4 +330,4 @@ def test_rounding_is_nothing_beside_the_scale_of_a_mechanism() -> None:
 def test_moments_of_inertia_are_in_units_that_people_know() -> None:
     text = report.report(four_bar_motion(), None, None)
     assert "kg mm²" not in text
-    assert re.search(r"\| crank \|.* kg cm² \|", text)
+    assert re.search(r"\| crank \|.* kg·cm² \|", text)

@@ -31,6 +31,7 @@ def opening(scenery: Scenery) -> Stand:
         return whole
     name = busiest_joint(scenery)
     place = np.array(whole.target) if name is None else in_studio(np.array(place_at(scenery, name)), scenery.up)
+    near = whole
     for part in np.linspace(1.0, CLOSEST, 31)[1:]:  # the joint keeps its place in the picture
         target = point(place + part * (np.array(whole.target) - place))
         near = replace(whole, target=target, distance=part * whole.distance)

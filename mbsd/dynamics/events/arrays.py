@@ -225,3 +225,7 @@ class Contacts(NamedTuple):
     log: Any
     """(n, 2) gap and impulse (N s, N m s) of each impact of the last event, in order; no rows where none is kept."""
     outside: Outside
+    outlines: Any
+    """(o, 4) int, rows of outlines; see outlines.py."""
+    pairs: Any
+    """(o,) scratch: codes of their pairs."""

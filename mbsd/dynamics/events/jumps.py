@@ -21,6 +21,7 @@ from __future__ import annotations
 from mbsd.compiling.jit import apart, internal, kernel
 from mbsd.dynamics.events import arrays, rows
 from mbsd.dynamics.events.friction import note_met, one_by_one, slide_or_stick, solve_with_friction
+from mbsd.dynamics.events.outlines import keep_pairs
 from mbsd.dynamics.events.sticking.deciding import decide
 from mbsd.dynamics.events.sticking.sharing import stand
 from mbsd.dynamics.formulation import derivative
@@ -269,6 +270,7 @@ def resolve(dyn, scratch, contacts, state, met):
     if not _settle(dyn, scratch, contacts, state, staying, halted, slipping, touched):
         return False
     _hold_decided(dyn, scratch, contacts)
+    keep_pairs(dyn, scratch, contacts, state.clock[TIME], state.y[0])
     return True
 
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.arrays.curve_branches import CURVES
+from mbsd.arrays.outline_pairs import outline_rows, siblings
 from mbsd.compiling.callback import Callback
 from mbsd.compiling.jit import COMPILED
 from mbsd.dynamics import repeated_rows
@@ -106,6 +107,7 @@ def contacts_of(
         repeated_of(ready),
         np.zeros(((ROUNDS + 1) * len(ready.switches.contacts) if log else 0, 2)),
         arrays.Outside(np.zeros(1, np.int64), np.zeros(2), np.zeros(1)),
+        *_outlines_of(ready),
     )
 
 
@@ -215,6 +217,14 @@ def _curves_of(ready: PreparedDynamics) -> arrays.Curves:
     ]
     numbers = ready.packed.system.numbers.copy() if rows else np.zeros(0)
     return arrays.Curves(np.array(place, np.int64).reshape(-1, 4), numbers, np.zeros(len(place)))
+
+
+def _outlines_of(ready: PreparedDynamics) -> tuple[np.ndarray, np.ndarray]:
+    """Return the rows of outlines, and scratch for their pairs."""
+    known = {contact.gap: k for k, contact in enumerate(ready.switches.contacts)}
+    rows = outline_rows(ready.packed)
+    place = [(known[row.gap], row.relative, row.way, other) for row, other in zip(rows, siblings(rows), strict=True)]
+    return np.array(place, np.int64).reshape(-1, 4), np.zeros(len(place))
 
 
 def _without(ready: PreparedDynamics, events: Sequence[Event]) -> tuple[Schur, np.ndarray]:

@@ -43,14 +43,15 @@ def force(numbers, state, out):
             _, feature, gap = features.search(numbers, state, run, run + 1, skip_run, skip, foot)
             if feature < 0:
                 break
-            gap = features.stand(numbers, state, run, features.feature_at(numbers, feature))
+            end = int(state[features.USED_END])
+            gap = features.stand(numbers, state, run, features.feature_at(numbers, feature), end)
             foot = state[features.FOOT]
             if features.touches(numbers, state, feature):
                 speed = _push(numbers, state, out, own, feature, -gap)
                 if -gap > deepest:
                     deepest = -gap
                     rate = speed
-            if numbers[features.SECOND] == 0.0 or gap > 0.0:
+            if numbers[features.SECOND] == 0.0:
                 break
             skip_run = run
             skip = feature

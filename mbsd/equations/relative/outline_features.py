@@ -13,13 +13,15 @@ theta: angle of w;  phi: angle of -n;  a: angle of marker j. A pair counts where
 pair has the least |gap|; where it is a corner on a corner, or a feature that is left out because the run is in the
 other row, nothing can touch there and the gap is that distance and a little more.
 
-A second row of the same runs has the next pair: its foot is another place of the outline, whose outer side faces the
-run, or the other side of a concave corner. While a row is closed it keeps its pair and goes on to the next feature only
+Two rows of the same runs share the nearest pair and the deepest or nearest other one, the lesser gap in the first row.
+The other has its foot at another place of the outline, whose outer side faces the run, or on the other side of a
+concave corner. While a row is closed it keeps its pair and goes on to the next feature only
 where the normal does not jump; ROOM is how far (m) it is from where that ends, as at the tip of a tooth, and is an event
 (mbsd/dynamics/events/outlines.py). Codes of the pair of a row and of that of its sibling are in LAST.
 
-Numbers, from OWN on: counts of runs, elements and features; 1 in the second row; gap where there is none; how far
-features reach beyond concave corners (m); the little more (m); what the way grows by in a round of the outline (m);
+Numbers, from OWN on: counts of runs, elements and features; 1 in the first of two rows of the same runs, 2 in the
+second, 0 in a single one; gap where there is none; how far
+features reach beyond concave corners (m); the little more (m); the depth beyond which a pair is none (m); what the way grows by in a round of the outline (m);
 then runs, elements and features with the columns below.
 """
 
@@ -31,7 +33,7 @@ from mbsd.compiling.jit import internal
 from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA, FYY, OWN, A, F, X, Y, clear
 from mbsd.equations.system import LAST
 
-RUNS, ELEMENTS, FEATURES, SECOND, NOWHERE, BEYOND, MORE, ROUND, TABLES = range(OWN, OWN + 9)
+RUNS, ELEMENTS, FEATURES, SECOND, NOWHERE, BEYOND, MORE, DEEPEST, ROUND, TABLES = range(OWN, OWN + 10)
 FIRST, END, RUN_X, RUN_Y, RUN_REACH, CLOSED, RUN_LENGTH, RUN_WIDTH = range(8)
 """Columns of a run: first element and the one after its last, a circle around it, 1 if it is a closed loop and then its
 length (m), else 0."""
@@ -47,9 +49,12 @@ without a jump of the normal, 0 at a concave corner; length (m), or angle (rad) 
 left out; angle of -n at its begin."""
 FEATURE_WIDTH = 16
 LINE, CONVEX, CONCAVE = 0.0, 1.0, -1.0
-PLACE, ROOM, CX, CY, CR, QX, QY, WX, WY, FOOT = range(4, 14)
-"""Scratch after the relative pose: code of the pair (0: none), room (m), centre and radius of the facing circle in the
-axes of i, its centre from marker j, w, and the foot's s (an angle on arcs)."""
+PLACE, ROOM, FACING, USED_END, CR, QX, QY, WX, WY, FOOT = range(4, 14)
+"""Scratch after the relative pose: code of the pair (0: none), room (m), 1 if an arc faces the feature, else the end of
+the run that is used; radius of the circle and its centre from marker j in the axes of i, w, and the foot's s (an angle
+on arcs)."""
+BEGIN, FINISH, NEARER = 0, 1, 2
+"""Ends of a run to use where none of its arcs faces a feature."""
 CODES = 1 << 24
 ROUNDING, NEAR_END = 1e-9, 1e-6
 """Parts of a size within which a foot is on a feature, or at its end."""
@@ -97,11 +102,9 @@ def _measure(numbers, relative, f, px, py, r):
     qy = s * px + c * py
     relative[QX] = qx
     relative[QY] = qy
-    relative[CX] = relative[X] + qx
-    relative[CY] = relative[Y] + qy
     relative[CR] = r
-    wx = relative[CX] - numbers[f + FEATURE_X]
-    wy = relative[CY] - numbers[f + FEATURE_Y]
+    wx = relative[X] + qx - numbers[f + FEATURE_X]
+    wy = relative[Y] + qy - numbers[f + FEATURE_Y]
     relative[WX] = wx
     relative[WY] = wy
     if numbers[f + KIND] == LINE:
@@ -114,8 +117,11 @@ def _measure(numbers, relative, f, px, py, r):
 
 
 @internal
-def stand(numbers, relative, run, f):
-    """Return the gap of a run from feature f, whatever the foot is, and leave what faces it in the scratch."""
+def stand(numbers, relative, run, f, choice):
+    """Return the gap of a run from feature f, whatever the foot is, and leave what faces it in the scratch.
+
+    ``choice``: the end that is used where no arc faces it.
+    """
     row = run_at(numbers, run)
     first = int(numbers[row + FIRST])
     end = int(numbers[row + END])
@@ -138,18 +144,25 @@ def stand(numbers, relative, run, f):
         else:
             faces = alone or _faces(numbers, e, kind * (jx - numbers[e + AT_X]), kind * (jy - numbers[e + AT_Y]))
         if faces:
+            relative[FACING] = 1.0
             return _measure(numbers, relative, f, numbers[e + AT_X], numbers[e + AT_Y], numbers[e + RADIUS])
-    e = _element_at(numbers, first)
-    ax = numbers[e + AT_X] + numbers[e + RADIUS] * numbers[e + U0X]
-    ay = numbers[e + AT_Y] + numbers[e + RADIUS] * numbers[e + U0Y]
-    e = _element_at(numbers, end - 1)
-    bx = numbers[e + AT_X] + numbers[e + RADIUS] * numbers[e + U1X]
-    by = numbers[e + AT_Y] + numbers[e + RADIUS] * numbers[e + U1Y]
-    at_begin = _measure(numbers, relative, f, ax, ay, 0.0)
-    at_end = _measure(numbers, relative, f, bx, by, 0.0)
-    if at_begin < at_end:
-        return _measure(numbers, relative, f, ax, ay, 0.0)
-    return at_end
+    relative[FACING] = 0.0
+    relative[USED_END] = choice
+    if choice == BEGIN:
+        return _measure_end(numbers, relative, f, first, U0X)
+    at_end = _measure_end(numbers, relative, f, end - 1, U1X)
+    if choice == NEARER and _measure_end(numbers, relative, f, first, U0X) < at_end:
+        return _measure_end(numbers, relative, f, first, U0X)
+    return _measure_end(numbers, relative, f, end - 1, U1X)
+
+
+@internal
+def _measure_end(numbers, relative, f, element, normal):
+    """Return the gap of an element's end, whose unit normal is in the column ``normal``, from feature f."""
+    e = _element_at(numbers, element)
+    x = numbers[e + AT_X] + numbers[e + RADIUS] * numbers[e + normal]
+    y = numbers[e + AT_Y] + numbers[e + RADIUS] * numbers[e + normal + 1]
+    return _measure(numbers, relative, f, x, y, 0.0)
 
 
 @internal
@@ -193,7 +206,7 @@ def _follow(numbers, relative, run, feature):
     relative[ROOM] = math.inf
     for _ in range(2 * count + 2):
         f = feature_at(numbers, feature)
-        gap = stand(numbers, relative, run, f)
+        gap = stand(numbers, relative, run, f, NEARER)
         foot = relative[FOOT]
         span = numbers[f + SPAN]
         radius = relative[CR]
@@ -224,7 +237,8 @@ def _follow(numbers, relative, run, feature):
 def search(numbers, relative, first, end, skip_run, skip, skip_foot):
     """Return run, feature and gap of the nearest pair of runs ``first`` to ``end``, -1 where there is none.
 
-    One place, which run ``skip_run`` has on feature ``skip``, is skipped.
+    Where run ``skip_run`` has a place on feature ``skip``, that is skipped, and the deepest or nearest of the others
+    found.
     """
     count = int(numbers[FEATURES])
     c = math.cos(relative[A])
@@ -232,6 +246,7 @@ def search(numbers, relative, first, end, skip_run, skip, skip_foot):
     best_run = -1
     best = -1
     best_gap = numbers[NOWHERE]
+    end_used = BEGIN
     least = math.inf
     for run in range(first, end):
         row = run_at(numbers, run)
@@ -242,19 +257,24 @@ def search(numbers, relative, first, end, skip_run, skip, skip_foot):
             reach = numbers[row + RUN_REACH] + numbers[f + REACH]
             ax = mx - numbers[f + CIRCLE_X]
             ay = my - numbers[f + CIRCLE_Y]
-            if least < math.inf and ax * ax + ay * ay > (reach + least) ** 2:
+            if least < math.inf and ax * ax + ay * ay > (reach + abs(least)) ** 2:
                 continue
             if run == skip_run and feature == skip:
                 continue
-            gap = stand(numbers, relative, run, f)
-            if not abs(gap) < least or not _is_on(numbers, relative, feature):
-                continue
-            if run == skip_run and not _is_another(numbers, relative, feature, gap, skip, skip_foot):
-                continue
-            least = abs(gap)
-            best_gap = gap
-            best_run = run
-            best = feature
+            for choice in range(2):
+                gap = stand(numbers, relative, run, f, choice)
+                size = gap if skip >= 0 else abs(gap)
+                if size < least and gap > -numbers[DEEPEST] and _is_on(numbers, relative, feature):
+                    beside = run == skip_run
+                    if not beside or _is_another(numbers, relative, feature, gap, skip, skip_foot):
+                        least = size
+                        best_gap = gap
+                        best_run = run
+                        best = feature
+                        end_used = choice
+                if relative[FACING] != 0.0:
+                    break
+    relative[USED_END] = end_used
     return best_run, best, best_gap
 
 
@@ -292,21 +312,28 @@ def find_pair(numbers, relative):
     skip_run = -1
     skip = -1
     skip_foot = 0.0
+    skip_gap = math.inf
+    skip_end = 0.0
     if other > 0:
         skip_run = (int(other) - 1) // 4096
         skip, _ = _follow(numbers, relative, skip_run, (int(other) - 1) % 4096)
         skip_foot = relative[FOOT]
     elif numbers[SECOND] != 0.0:
         skip_run, skip, _ = search(numbers, relative, 0, int(numbers[RUNS]), -1, -1, 0.0)
+        skip_end = relative[USED_END]
         if skip >= 0:
-            stand(numbers, relative, skip_run, feature_at(numbers, skip))
+            skip_gap = stand(numbers, relative, skip_run, feature_at(numbers, skip), int(skip_end))
             skip_foot = relative[FOOT]
     relative[ROOM] = math.inf
     relative[PLACE] = 0.0
     run, feature, gap = search(numbers, relative, 0, int(numbers[RUNS]), skip_run, skip, skip_foot)
+    if skip_gap < math.inf and (gap < skip_gap) != (numbers[SECOND] == 1.0):
+        run = skip_run
+        feature = skip
+        relative[USED_END] = skip_end
     if feature < 0:
         return -1, numbers[NOWHERE]
-    gap = stand(numbers, relative, run, feature_at(numbers, feature))
+    gap = stand(numbers, relative, run, feature_at(numbers, feature), int(relative[USED_END]))
     if touches(numbers, relative, feature):
         relative[PLACE] = _code(run, feature)
     return feature, gap

@@ -20,8 +20,9 @@ SMOOTH = 1e-6
 """Turn of the tangent (rad) below which two pieces go on without a corner."""
 WIDEST = math.radians(100.0)
 """Turn of one arc at most."""
-MORE, BEYOND = 1e-6, 0.5
-"""Parts of the size: what is added where nothing touches; how far features reach beyond concave corners, in theirs."""
+MORE, BEYOND, DEEPEST = 1e-6, 0.5, 0.2
+"""Parts of the size: what is added where nothing touches; how far features reach beyond concave corners, in theirs; how
+deep a pair may be."""
 NOWHERE = 10.0
 """Gap where there is no pair, in sizes."""
 Vector = tuple[float, float]
@@ -195,8 +196,9 @@ def table_of(
     around += sum(arc.length for arc in chosen[0].arcs) if chosen[0].closed else 0.0
     shortest = min(feature.length for feature in features if feature.length > 0.0)
     count = sum(len(run.arcs) for run in chosen)
-    head = [len(chosen), count, len(features), second, NOWHERE * (_extent(outline_i) + _extent(outline_j))]
-    head += [BEYOND * shortest, MORE * size, around]
+    mode = 2 if second else 0 if is_convex(outline_i) else 1
+    head = [len(chosen), count, len(features), mode, NOWHERE * (_extent(outline_i) + _extent(outline_j))]
+    head += [BEYOND * shortest, MORE * size, DEEPEST * size, around]
     rows: list[float] = []
     elements: list[float] = []
     begun = 0

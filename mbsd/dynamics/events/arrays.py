@@ -229,3 +229,7 @@ class Contacts(NamedTuple):
     """(o, 4) int, rows of outlines; see outlines.py."""
     pairs: Any
     """(o,) scratch: codes of their pairs."""
+    swept_place: Any
+    """(p, 4) int, pairs of outlines; see following.py."""
+    swept: Any
+    """(p, 7)"""

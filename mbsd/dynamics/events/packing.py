@@ -38,6 +38,9 @@ from mbsd.kinematics.limits.free_wheels import HALF
 from mbsd.kinematics.pose import held_values, mobility
 from mbsd.model.body import Marker
 from mbsd.model.event import Event, Reaching
+from mbsd.model.outlines.contact import tuples_of
+from mbsd.model.outlines.features import DEEPEST, circle_around
+from mbsd.model.outlines.geometry import Corner, size_of
 
 NEAR = 1e-11
 """Gaps below this part of the size (rad) are closed; rates below it by 1 s are zero where bodies rest."""
@@ -45,6 +48,9 @@ ROUNDINGS = ((1.0, 1.0, -1.0, -1.0), (-1.0, 1.0, 1.0, -1.0), (1.0, -1.0, 1.0), (
 """Signs, repeated, of small changes of a state."""
 STILL = 1e-9
 """Rates below this part of the size (rad) by 1 s are zero."""
+
+HALF_DEEPEST = 0.5 * DEEPEST
+"""How deep outlines may get in a step, as part of the lesser size."""
 
 Entry = tuple[np.ndarray, tuple[int, ...]]
 """An array and an index in it."""
@@ -219,12 +225,35 @@ def _curves_of(ready: PreparedDynamics) -> arrays.Curves:
     return arrays.Curves(np.array(place, np.int64).reshape(-1, 4), numbers, np.zeros(len(place)))
 
 
-def _outlines_of(ready: PreparedDynamics) -> tuple[np.ndarray, np.ndarray]:
-    """Return the rows of outlines, and scratch for their pairs."""
-    known = {contact.gap: k for k, contact in enumerate(ready.switches.contacts)}
-    rows = outline_rows(ready.packed)
+def _outlines_of(ready: PreparedDynamics) -> tuple[np.ndarray, ...]:
+    """Return the rows of outlines, scratch for their pairs, and the pairs of bodies with circles around them."""
+    packed, known = ready.packed, {contact.gap: k for k, contact in enumerate(ready.switches.contacts)}
+    rows = outline_rows(packed)
     place = [(known[row.gap], row.relative, row.way, other) for row, other in zip(rows, siblings(rows), strict=True)]
-    return np.array(place, np.int64).reshape(-1, 4), np.zeros(len(place))
+    pairs: dict[Any, tuple[list[int], list[float]]] = {}
+    for k, row in enumerate(rows):
+        ends = [
+            (m, tuples_of(row.joint.params[key])) for m, key in ((row.joint.i, "outline_i"), (row.joint.j, "outline_j"))
+        ]
+        key = frozenset((marker.body.name, corners) for marker, corners in ends)
+        if key not in pairs:
+            bodies = [packed.body_names.index(marker.body.name) for marker, _ in ends]
+            circles = [_circle_on(packed.com[b], *end) for b, end in zip(bodies, ends, strict=True)]
+            least = min(size_of(corners) for _, corners in ends)
+            pairs[key] = [*bodies, k, k], [*circles[0], *circles[1], HALF_DEEPEST * least]
+        pairs[key][0][3] = k + 1
+    swept = np.array([where for where, _ in pairs.values()], np.int64).reshape(-1, 4)
+    return (
+        np.array(place, np.int64).reshape(-1, 4), np.zeros(len(place)), swept,
+        np.array([numbers for _, numbers in pairs.values()], float).reshape(-1, 7),
+    )  # fmt: skip
+
+
+def _circle_on(com: np.ndarray, marker: Marker, corners: tuple[Corner, ...]) -> tuple[float, float, float]:
+    """Return centre, from the centre of mass, and radius of a circle around an outline about a marker (m)."""
+    x, y, radius = circle_around(corners)
+    c, s = math.cos(marker.angle), math.sin(marker.angle)
+    return marker.x + c * x - s * y - float(com[0]), marker.y + s * x + c * y - float(com[1]), radius
 
 
 def _without(ready: PreparedDynamics, events: Sequence[Event]) -> tuple[Schur, np.ndarray]:

@@ -19,8 +19,7 @@ concave corner. While a row is closed it keeps its pair and goes on to the next 
 where the normal does not jump; ROOM is how far (m) it is from where that ends, as at the tip of a tooth, and is an event
 (mbsd/dynamics/events/outlines.py). Codes of the pair of a row and of that of its sibling are in LAST.
 
-Numbers, from OWN on: counts of runs, elements and features; 1 in the first of two rows of the same runs, 2 in the
-second, 0 in a single one; gap where there is none; how far
+Numbers, from OWN on: counts of runs, elements and features; 1 in the second of two rows of the same runs, else 0; gap where there is none; how far
 features reach beyond concave corners (m); the little more (m); the depth beyond which a pair is none (m); what the way grows by in a round of the outline (m);
 then runs, elements and features with the columns below.
 """
@@ -53,8 +52,9 @@ PLACE, ROOM, FACING, USED_END, CR, QX, QY, WX, WY, FOOT = range(4, 14)
 """Scratch after the relative pose: code of the pair (0: none), room (m), 1 if an arc faces the feature, else the end of
 the run that is used; radius of the circle and its centre from marker j in the axes of i, w, and the foot's s (an angle
 on arcs)."""
-BEGIN, FINISH, NEARER = 0, 1, 2
-"""Ends of a run to use where none of its arcs faces a feature."""
+FACES, BEGIN, FINISH = 0, 1, 2
+"""What of a run is used: the arc that faces a feature, or the deeper end where none does; or one of its ends."""
+SAME, APART = 0, 1
 CODES = 1 << 24
 ROUNDING, NEAR_END = 1e-9, 1e-6
 """Parts of a size within which a foot is on a feature, or at its end."""
@@ -81,6 +81,13 @@ def feature_at(numbers, feature):
 @internal
 def _code(run, feature):
     return 1 + run * 4096 + feature
+
+
+@internal
+def _is_corner(numbers, row):
+    """Return True if a run is one corner alone."""
+    first = int(numbers[row + FIRST])
+    return int(numbers[row + END]) == first + 1 and numbers[_element_at(numbers, first) + RADIUS] == 0.0
 
 
 @internal
@@ -120,11 +127,17 @@ def _measure(numbers, relative, f, px, py, r):
 def stand(numbers, relative, run, f, choice):
     """Return the gap of a run from feature f, whatever the foot is, and leave what faces it in the scratch.
 
-    ``choice``: the end that is used where no arc faces it.
+    ``choice``: what of the run is used.
     """
     row = run_at(numbers, run)
     first = int(numbers[row + FIRST])
     end = int(numbers[row + END])
+    relative[USED_END] = choice
+    relative[FACING] = 0.0
+    if choice == BEGIN:
+        return _measure_end(numbers, relative, f, first, U0X)
+    if choice == FINISH:
+        return _measure_end(numbers, relative, f, end - 1, U1X)
     c = math.cos(relative[A])
     s = math.sin(relative[A])
     kind = numbers[f + KIND]
@@ -136,7 +149,7 @@ def stand(numbers, relative, run, f, choice):
         dy = numbers[f + FEATURE_Y] - relative[Y]
     jx = c * dx + s * dy
     jy = c * dy - s * dx
-    alone = end == first + 1 and numbers[_element_at(numbers, first) + RADIUS] == 0.0
+    alone = _is_corner(numbers, row)
     for k in range(first, end):
         e = _element_at(numbers, k)
         if kind == LINE:
@@ -146,12 +159,8 @@ def stand(numbers, relative, run, f, choice):
         if faces:
             relative[FACING] = 1.0
             return _measure(numbers, relative, f, numbers[e + AT_X], numbers[e + AT_Y], numbers[e + RADIUS])
-    relative[FACING] = 0.0
-    relative[USED_END] = choice
-    if choice == BEGIN:
-        return _measure_end(numbers, relative, f, first, U0X)
     at_end = _measure_end(numbers, relative, f, end - 1, U1X)
-    if choice == NEARER and _measure_end(numbers, relative, f, first, U0X) < at_end:
+    if _measure_end(numbers, relative, f, first, U0X) < at_end:
         return _measure_end(numbers, relative, f, first, U0X)
     return _measure_end(numbers, relative, f, end - 1, U1X)
 
@@ -206,7 +215,7 @@ def _follow(numbers, relative, run, feature):
     relative[ROOM] = math.inf
     for _ in range(2 * count + 2):
         f = feature_at(numbers, feature)
-        gap = stand(numbers, relative, run, f, NEARER)
+        gap = stand(numbers, relative, run, f, FACES)
         foot = relative[FOOT]
         span = numbers[f + SPAN]
         radius = relative[CR]
@@ -237,17 +246,15 @@ def _follow(numbers, relative, run, feature):
 def search(numbers, relative, first, end, skip_run, skip, skip_foot):
     """Return run, feature and gap of the nearest pair of runs ``first`` to ``end``, -1 where there is none.
 
-    Where run ``skip_run`` has a place on feature ``skip``, that is skipped, and the deepest or nearest of the others
-    found.
+    Where run ``skip_run`` has a place on feature ``skip``, that is skipped.
     """
     count = int(numbers[FEATURES])
     c = math.cos(relative[A])
     s = math.sin(relative[A])
     best_run = -1
     best = -1
-    best_gap = numbers[NOWHERE]
-    end_used = BEGIN
-    least = math.inf
+    end_used = FACES
+    least = numbers[NOWHERE]
     for run in range(first, end):
         row = run_at(numbers, run)
         mx = relative[X] + c * numbers[row + RUN_X] - s * numbers[row + RUN_Y]
@@ -257,45 +264,106 @@ def search(numbers, relative, first, end, skip_run, skip, skip_foot):
             reach = numbers[row + RUN_REACH] + numbers[f + REACH]
             ax = mx - numbers[f + CIRCLE_X]
             ay = my - numbers[f + CIRCLE_Y]
-            if least < math.inf and ax * ax + ay * ay > (reach + abs(least)) ** 2:
+            if ax * ax + ay * ay > (reach + max(least, 0.0)) ** 2:
                 continue
             if run == skip_run and feature == skip:
                 continue
-            for choice in range(2):
+            for choice in range(1 if _is_corner(numbers, row) else 3):
                 gap = stand(numbers, relative, run, f, choice)
-                size = gap if skip >= 0 else abs(gap)
-                if size < least and gap > -numbers[DEEPEST] and _is_on(numbers, relative, feature):
-                    beside = run == skip_run
-                    if not beside or _is_another(numbers, relative, feature, gap, skip, skip_foot):
-                        least = size
-                        best_gap = gap
-                        best_run = run
-                        best = feature
-                        end_used = choice
-                if relative[FACING] != 0.0:
+                if choice == FACES and relative[FACING] == 0.0:
+                    continue
+                if gap <= -numbers[DEEPEST] or not _is_on(numbers, relative, feature):
+                    continue
+                side = APART
+                if run == skip_run:
+                    side = _side_of(numbers, relative, feature, skip, skip_foot)
+                if side != SAME and gap < least and (gap >= 0.0 or _is_in(numbers, relative, feature, gap)):
+                    least = gap
+                    best_run = run
+                    best = feature
+                    end_used = choice
+                if choice == FACES:
                     break
     relative[USED_END] = end_used
-    return best_run, best, best_gap
+    return best_run, best, least
 
 
 @internal
-def _is_another(numbers, relative, feature, gap, skip, skip_foot):
-    """Return True if the foot in the scratch is a place that may be touched beside the foot of feature ``skip``."""
+def _side_of(numbers, relative, feature, skip, skip_foot):
+    """Return how a feature goes on from the foot on ``skip``: the SAME place, or APART."""
     count = int(numbers[FEATURES])
     old = feature_at(numbers, skip)
     span = numbers[old + SPAN]
     near = NEAR_END * max(span, 1e-300)
     if feature == (skip + 1) % count:
         if numbers[old + LINKED] == 0.0:
-            return True
+            return APART
         if skip_foot > span - near:
-            return False
+            return SAME
     if feature == (skip + count - 1) % count:
         if numbers[feature_at(numbers, feature) + LINKED] == 0.0:
-            return True
+            return APART
         if skip_foot < near:
+            return SAME
+    return APART
+
+
+@internal
+def _is_in(numbers, relative, feature, gap):
+    """Return True if the circle in the scratch enters the outline by a feature, and not by the other side of it.
+
+    Its point there is then inside, and no feature beyond the next ones is much nearer to it; or a corner is in it.
+    """
+    f = feature_at(numbers, feature)
+    if numbers[f + KIND] == CONVEX and numbers[f + SIZE] == 0.0:
+        return gap > -relative[CR]
+    wx = relative[WX]
+    wy = relative[WY]
+    if numbers[f + KIND] == LINE:
+        nx = numbers[f + T0Y]
+        ny = -numbers[f + T0X]
+    else:
+        length = math.sqrt(wx * wx + wy * wy)
+        if length == 0.0:
             return False
-    return gap > -relative[CR] or gap >= 0.0
+        nx = numbers[f + KIND] * wx / length
+        ny = numbers[f + KIND] * wy / length
+    x = relative[X] + relative[QX] - relative[CR] * nx
+    y = relative[Y] + relative[QY] - relative[CR] * ny
+    least = math.inf
+    off = 0.0
+    count = int(numbers[FEATURES])
+    for k in range(count):
+        away, corner = _distances(numbers, feature_at(numbers, k), x, y)
+        steps = abs(k - feature)
+        if abs(away) < -0.5 * gap and min(steps, count - steps) > 2:
+            return False
+        if abs(away) < least:
+            least = abs(away)
+            off = away
+        if corner < least:
+            least = corner
+            off = -corner
+    return off < 0.0
+
+
+@internal
+def _distances(numbers, f, x, y):
+    """Return how far a point (x, y) is from a feature, and from the concave corner at its end; infinite if not."""
+    wx = x - numbers[f + FEATURE_X]
+    wy = y - numbers[f + FEATURE_Y]
+    size = numbers[f + SIZE]
+    if numbers[f + KIND] == LINE:
+        foot = numbers[f + T0X] * wx + numbers[f + T0Y] * wy
+        off = numbers[f + T0Y] * wx - numbers[f + T0X] * wy
+    else:
+        turn = math.atan2(numbers[f + T0X] * wy - numbers[f + T0Y] * wx, numbers[f + T0X] * wx + numbers[f + T0Y] * wy)
+        foot = numbers[f + KIND] * turn
+        off = numbers[f + KIND] * (math.sqrt(wx * wx + wy * wy) - size)
+    corner = math.inf
+    if numbers[f + LINKED] == 0.0:
+        corner = math.sqrt((wx - size * numbers[f + T1X]) ** 2 + (wy - size * numbers[f + T1Y]) ** 2)
+    return (off if foot >= 0.0 and foot <= numbers[f + SPAN] else math.inf), corner
 
 
 @internal
@@ -312,25 +380,18 @@ def find_pair(numbers, relative):
     skip_run = -1
     skip = -1
     skip_foot = 0.0
-    skip_gap = math.inf
-    skip_end = 0.0
     if other > 0:
         skip_run = (int(other) - 1) // 4096
         skip, _ = _follow(numbers, relative, skip_run, (int(other) - 1) % 4096)
         skip_foot = relative[FOOT]
     elif numbers[SECOND] != 0.0:
         skip_run, skip, _ = search(numbers, relative, 0, int(numbers[RUNS]), -1, -1, 0.0)
-        skip_end = relative[USED_END]
         if skip >= 0:
-            skip_gap = stand(numbers, relative, skip_run, feature_at(numbers, skip), int(skip_end))
+            stand(numbers, relative, skip_run, feature_at(numbers, skip), int(relative[USED_END]))
             skip_foot = relative[FOOT]
     relative[ROOM] = math.inf
     relative[PLACE] = 0.0
     run, feature, gap = search(numbers, relative, 0, int(numbers[RUNS]), skip_run, skip, skip_foot)
-    if skip_gap < math.inf and (gap < skip_gap) != (numbers[SECOND] == 1.0):
-        run = skip_run
-        feature = skip
-        relative[USED_END] = skip_end
     if feature < 0:
         return -1, numbers[NOWHERE]
     gap = stand(numbers, relative, run, feature_at(numbers, feature), int(relative[USED_END]))

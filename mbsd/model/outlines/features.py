@@ -196,8 +196,7 @@ def table_of(
     around += sum(arc.length for arc in chosen[0].arcs) if chosen[0].closed else 0.0
     shortest = min(feature.length for feature in features if feature.length > 0.0)
     count = sum(len(run.arcs) for run in chosen)
-    mode = 2 if second else 0 if is_convex(outline_i) else 1
-    head = [len(chosen), count, len(features), mode, NOWHERE * (_extent(outline_i) + _extent(outline_j))]
+    head = [len(chosen), count, len(features), second, NOWHERE * (_extent(outline_i) + _extent(outline_j))]
     head += [BEYOND * shortest, MORE * size, DEEPEST * size, around]
     rows: list[float] = []
     elements: list[float] = []

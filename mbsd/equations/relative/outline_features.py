@@ -150,6 +150,8 @@ def stand(numbers, relative, run, f, choice):
     jx = c * dx + s * dy
     jy = c * dy - s * dx
     alone = _is_corner(numbers, row)
+    best = -1
+    least = math.inf
     for k in range(first, end):
         e = _element_at(numbers, k)
         if kind == LINE:
@@ -157,8 +159,18 @@ def stand(numbers, relative, run, f, choice):
         else:
             faces = alone or _faces(numbers, e, kind * (jx - numbers[e + AT_X]), kind * (jy - numbers[e + AT_Y]))
         if faces:
-            relative[FACING] = 1.0
-            return _measure(numbers, relative, f, numbers[e + AT_X], numbers[e + AT_Y], numbers[e + RADIUS])
+            gap = _measure(numbers, relative, f, numbers[e + AT_X], numbers[e + AT_Y], numbers[e + RADIUS])
+            near = ROUNDING * numbers[f + SPAN]
+            if relative[FOOT] < -near or relative[FOOT] > numbers[f + SPAN] + near:
+                gap += numbers[NOWHERE]
+            if gap < least:
+                least = gap
+                best = e
+            if kind == LINE:
+                break
+    if best >= 0:
+        relative[FACING] = 1.0
+        return _measure(numbers, relative, f, numbers[best + AT_X], numbers[best + AT_Y], numbers[best + RADIUS])
     at_end = _measure_end(numbers, relative, f, end - 1, U1X)
     if _measure_end(numbers, relative, f, first, U0X) < at_end:
         return _measure_end(numbers, relative, f, first, U0X)

@@ -13,14 +13,13 @@ DURATION = 4.0
 
 @dataclass(frozen=True)
 class Params:
-    """Teeth, radii (m), swing of the lever (rad) and its rate (rad/s), friction, and where the pawls turn (m)."""
+    """Teeth, radii (m), swing of the lever (rad) and its rate (rad/s), where the pawls turn (m)."""
 
     teeth: int = 18
     tip: float = 0.050
     root: float = 0.044
     swing: float = 0.30
     rate: float = 2 * pi * 0.75
-    friction: float = 0.12
     pawl: tuple[float, float] = (-0.055, 0.056)
 
 
@@ -47,7 +46,7 @@ def build(p: Params) -> Mechanism:
         pawl = m.body(name)
         m.revolute(f"{name}_pin", pin, pawl.origin)
         m.outline(pawl, PAWL)
-        m.outline_contact(f"{name}_click", wheel, pawl, friction=p.friction)
+        m.outline_contact(f"{name}_click", wheel, pawl)
         m.torsion_spring(f"{name}_spring", pin.body, pawl, 0.01, damping=2e-5, free_angle=angle - 1.0)
     m.torsion_spring("drag", m.ground, wheel, 0.0, damping=2e-3)
     m.start_near(wheel=4, lever=109, catch=190, pusher=-10)

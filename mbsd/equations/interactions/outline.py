@@ -71,8 +71,8 @@ def _push(numbers, state, out, own, feature, depth):
             return 0.0
         nx = numbers[f + features.KIND] * state[features.WX] / length
         ny = numbers[f + features.KIND] * state[features.WY] / length
-    ax = state[features.QX] - state[features.CR] * nx
-    ay = state[features.QY] - state[features.CR] * ny
+    ax = state[features.QX] - (state[features.CR] - depth) * nx
+    ay = state[features.QY] - (state[features.CR] - depth) * ny
     vx = state[law.VX] - state[law.OMEGA] * ay
     vy = state[law.VY] + state[law.OMEGA] * ax
     rate = -(nx * vx + ny * vy)

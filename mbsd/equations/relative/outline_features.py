@@ -1,27 +1,28 @@
-"""Two outlines that touch: features of the one on body i, convex runs of the other on body j, and their nearest pair.
+"""Two outlines that touch: features of the one on body i, runs of the other on body j, and their nearest pair.
 
-A feature is a line, a convex arc (radius R >= 0; a convex corner is one of radius 0) or a concave arc. A run is a row of
-convex arcs that follow each other: a corner, a rounded corner, a lobe, a circle. Each place where two bodies touch is
-one of a run on a feature. The arc of a run that faces the feature is a circle about c with radius r; where none faces
-it, the run's end is a point (r = 0). With w from the feature's begin, or centre, to c, tangent t and normal n outwards:
+A feature is a line, a convex arc (radius R >= 0; a convex corner is one of radius 0) or a concave arc. A run is a row
+of convex arcs that follow each other: a corner, a rounded corner, a lobe, a circle. Each place where two bodies touch
+is one of a run on a feature. The arc of a run that faces the feature is a circle about c with radius r; where none
+faces it, the run's end is a point (r = 0). With w from the feature's begin, or centre, to c, tangent t and normal n
+outwards:
 
     line      gap = n . w - r               foot s = t . w                  slid = s + r (phi - a)
     convex    gap = |w| - R - r             foot s = R theta                slid = R theta + r (phi - a)
     concave   gap = R - |w| - r             foot s = -R theta               slid = -R theta + r (phi - a)
 
-theta: angle of w;  phi: angle of -n;  a: angle of marker j. A pair counts where the foot is on the feature. The nearest
-pair has the least |gap|; where it is a corner on a corner, or a feature that is left out because the run is in the
-other row, nothing can touch there and the gap is that distance and a little more.
+theta: angle of w;  phi: angle of -n;  a: angle of marker j. A pair counts where the foot is on the feature, and a
+negative gap where the run enters the outline there. Where the pair is a corner on a corner, or a feature that is left
+out because the run is in the other row, nothing can touch there: the gap is that distance and a little more.
 
-Two rows of the same runs share the nearest pair and the deepest or nearest other one, the lesser gap in the first row.
-The other has its foot at another place of the outline, whose outer side faces the run, or on the other side of a
-concave corner. While a row is closed it keeps its pair and goes on to the next feature only
-where the normal does not jump; ROOM is how far (m) it is from where that ends, as at the tip of a tooth, and is an event
+Two rows of the same runs have the deepest or nearest pair and the next one, whose foot is at another place of the
+outline. While a row is closed it keeps its pair and goes on to the next feature only where the normal does not jump;
+ROOM is how far (m) it is from where that ends, as at the tip of a tooth, and is an event
 (mbsd/dynamics/events/outlines.py). Codes of the pair of a row and of that of its sibling are in LAST.
 
-Numbers, from OWN on: counts of runs, elements and features; 1 in the second of two rows of the same runs, else 0; gap where there is none; how far
-features reach beyond concave corners (m); the little more (m); the depth beyond which a pair is none (m); what the way grows by in a round of the outline (m);
-then runs, elements and features with the columns below.
+Numbers, from OWN on: counts of runs, elements and features; 1 in the second of two rows of the same runs, else 0; gap
+where there is none; how far features reach beyond concave corners (m); the little more (m); the depth beyond which a
+pair is none (m); what the way grows by in a round of the outline (m); then runs, elements and features with the columns
+below.
 """
 
 from __future__ import annotations
@@ -44,8 +45,8 @@ KIND, FEATURE_X, FEATURE_Y, T0X, T0Y, T1X, T1Y, SIZE, ARC, LINKED, SPAN, CIRCLE_
 )
 """Columns of a feature: LINE, CONVEX or CONCAVE; begin of the line, else the centre; tangent of the line, else unit
 vectors from the centre to begin and end; length or radius; arc length at its begin; 1 if the next goes on from its end
-without a jump of the normal, 0 at a concave corner; length (m), or angle (rad) of an arc; a circle around it; 1 if it is
-left out; angle of -n at its begin."""
+without a jump of the normal, 0 at a concave corner; length (m), or angle (rad) of an arc; a circle around it; 1 if it
+is left out; angle of -n at its begin."""
 FEATURE_WIDTH = 16
 LINE, CONVEX, CONCAVE = 0.0, 1.0, -1.0
 PLACE, ROOM, FACING, USED_END, CR, QX, QY, WX, WY, FOOT = range(4, 14)

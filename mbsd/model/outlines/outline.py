@@ -147,13 +147,13 @@ def _free_name(m: Model, body: Body) -> str:
 def checked_corners(what: str, path: object, hole: bool, tolerance: float | None) -> tuple[Corner, ...]:
     """Return the corners of a path, the right way round. Raises ModelError for what is no simple closed curve."""
     corners = _without_repeats(what, _corners_of(what, path, tolerance))
+    if len(corners) == 1:
+        raise ModelError(f"{what} has one point; give points all round it, or circle(radius)")
     if len(corners) < 3 and not any(abs(bulge) > STRAIGHT for _, _, bulge in corners):
         raise ModelError(
             f"{what} has {len(corners)} different points; it needs three, or two with an arc between. Give points all "
             "round it, the last not the first again"
         )
-    if len(corners) < 2:
-        raise ModelError(f"{what} has one point; give points all round it, or circle(radius)")
     size = size_of(corners)
     _check_crossing(what, corners, size)
     area = signed_area(corners)

@@ -107,7 +107,9 @@ def _plate(m: Mechanism, outline: Outline, mates: dict[str, set[str]], layout: L
     held = room > layout.sizes.eye
     if not held:
         x, y = points[:, 0], points[:, 1]
-        grid = [(float(u), float(v)) for u in np.linspace(x.min(), x.max(), 41) for v in np.linspace(y.min(), y.max(), 41)]
+        grid = [
+            (float(u), float(v)) for u in np.linspace(x.min(), x.max(), 41) for v in np.linspace(y.min(), y.max(), 41)
+        ]
         room, centre = max((_room(points, place), place) for place in grid)
     return OutlinePlate(outline, frozenset(mates[body]), centre, max(room - WALL, 0.5), held)
 

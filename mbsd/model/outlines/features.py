@@ -183,11 +183,17 @@ def groups_of(corners: tuple[Corner, ...], reach: float) -> list[list[int]]:
 
 @lru_cache(maxsize=1024)
 def table_of(
-    outline_i: tuple[Corner, ...], outline_j: tuple[Corner, ...], runs: tuple[int, ...], second: bool, arcs: bool
+    outline_i: tuple[Corner, ...],
+    outline_j: tuple[Corner, ...],
+    runs: tuple[int, ...],
+    second: bool,
+    arcs: bool,
+    deepest: float = DEEPEST,
 ) -> tuple[float, ...]:
     """Return the numbers of a row: ``runs`` of the outline of body j on the features of that of body i.
 
     ``second``: of the next pair beside the nearest. ``arcs``: convex arcs of body i count, too.
+    ``deepest``: part of the lesser size beyond which a pair is none.
     """
     chosen = [runs_of(outline_j)[k] for k in runs]
     features = features_of(outline_i)
@@ -197,7 +203,7 @@ def table_of(
     shortest = min(feature.length for feature in features if feature.length > 0.0)
     count = sum(len(run.arcs) for run in chosen)
     head = [len(chosen), count, len(features), second, NOWHERE * (_extent(outline_i) + _extent(outline_j))]
-    head += [BEYOND * shortest, MORE * size, DEEPEST * size, around]
+    head += [BEYOND * shortest, MORE * size, deepest * size, around]
     rows: list[float] = []
     elements: list[float] = []
     begun = 0

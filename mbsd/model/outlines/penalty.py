@@ -22,6 +22,8 @@ from mbsd.model.outlines.features import CONCAVE, LINE, circle_around, features_
 from mbsd.model.outlines.geometry import Corner
 from mbsd.model.outlines.outline import Outline, circle
 
+WHOLE = 1.0
+"""Part of the lesser size that outlines may be in each other."""
 OWN = ("stiffness", "exponent", "damping", "friction", "slip_speed")
 
 
@@ -36,7 +38,7 @@ def _interactions(force, masses):
 
 
 def _table(i: tuple[Corner, ...], j: tuple[Corner, ...], arcs: bool) -> tuple[float, ...]:
-    return table_of(i, j, tuple(range(len(runs_of(j)))), not is_convex(i), arcs)
+    return table_of(i, j, tuple(range(len(runs_of(j)))), not is_convex(i), arcs, WHOLE)
 
 
 OUTLINE_FORCE = register_force(

@@ -102,7 +102,7 @@ def contacts_of(
         np.zeros((pushing, 2 * pushing + 2)),
         np.zeros((arrays.SHIFT + 1, c)),
         np.zeros((arrays.MOST_LOOKS + 2, 6)),
-        np.zeros((arrays.RESTING + 1, c), np.int64),
+        np.zeros((arrays.STRUCK + 1, c), np.int64),
         *bare,
         np.zeros((2, pushing), np.int64),
         _sticks_of(ready, c, n3, rows),

@@ -281,7 +281,7 @@ def search(numbers, relative, first, end, skip_run, skip, skip_foot):
                 continue
             if run == skip_run and feature == skip:
                 continue
-            for choice in range(1 if _is_corner(numbers, row) else 3):
+            for choice in range(1 if _is_corner(numbers, row) or numbers[row + CLOSED] != 0.0 else 3):
                 gap = stand(numbers, relative, run, f, choice)
                 if choice == FACES and relative[FACING] == 0.0:
                     continue
@@ -328,6 +328,8 @@ def _is_in(numbers, relative, feature, gap):
     Its point there is then inside, and no feature beyond the next ones is much nearer to it; or a corner is in it.
     """
     f = feature_at(numbers, feature)
+    if gap > -numbers[MORE]:  # it is at its outside, as near as that; the sign of its depth may be rounding
+        return True
     if numbers[f + KIND] == CONVEX and numbers[f + SIZE] == 0.0:
         return gap > -relative[CR]
     wx = relative[WX]

@@ -328,8 +328,6 @@ def _is_in(numbers, relative, feature, gap):
     Its point there is then inside, and no feature beyond the next ones is much nearer to it; or a corner is in it.
     """
     f = feature_at(numbers, feature)
-    if gap > -numbers[MORE]:  # it is at its outside, as near as that; the sign of its depth may be rounding
-        return True
     if numbers[f + KIND] == CONVEX and numbers[f + SIZE] == 0.0:
         return gap > -relative[CR]
     wx = relative[WX]
@@ -350,6 +348,8 @@ def _is_in(numbers, relative, feature, gap):
     count = int(numbers[FEATURES])
     for k in range(count):
         away, corner = _distances(numbers, feature_at(numbers, k), x, y)
+        if k == feature and away < math.inf:
+            away = gap  # the same but for rounding, which must not change its sign
         steps = abs(k - feature)
         if abs(away) < -0.5 * gap and min(steps, count - steps) > 2:
             return False

@@ -32,7 +32,7 @@ class OutlineRow(NamedTuple):
     relative: int
     """Its row in Workspace.relative."""
     way: int
-    """That of its way; -1 without friction."""
+    """The row of its way; -1 without friction."""
 
 
 def outline_rows(packed: Packed) -> list[OutlineRow]:

@@ -11,7 +11,7 @@ from mbsd import Mechanism, ModelError, Solution, circle, spline_through
 
 
 class Books(NamedTuple):
-    """What a collision changed: momentum (kg m/s), spin (kg m^2/s), energy gained (J); how deep bodies got (m)."""
+    """Changes by a collision: momentum (kg m/s), spin (kg m^2/s), energy gained (J); how deep bodies got (m)."""
 
     momentum: float
     spin: float
@@ -77,8 +77,8 @@ def _depth(m: Mechanism, sol: Solution) -> float:
             seen, path = sol.body(name), m.outlines[name].path(0.02)
             c, s = math.cos(seen.theta[k]), math.sin(seen.theta[k])
             paths.append(path @ np.array([[c, s], [-s, c]]) + (seen.x[k], seen.y[k]))
-        for one, other in (paths, paths[::-1]):
-            deep = max([deep, *(_inside(one, p) for p in other)])
+        for first, other in (paths, paths[::-1]):
+            deep = max([deep, *(_inside(first, p) for p in other)])
     return deep
 
 

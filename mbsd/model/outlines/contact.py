@@ -138,20 +138,20 @@ Row = tuple[Outline, Outline, list[int], bool, bool]
 
 def _rows(m: Model, what: str, a: Outline | Body | str, b: Outline | Body | str) -> Iterator[Row]:
     """Yield outlines, runs and switches of each row of two things. Raises ModelError."""
-    pairs = [(one, other) for one in outlines_given(m, what, a) for other in outlines_given(m, what, b)]
+    pairs = [(first, other) for first in outlines_given(m, what, a) for other in outlines_given(m, what, b)]
     check_two_bodies(m, what, pairs)
-    for one, other in pairs:
-        yield from _rows_of(other, one, True)
-        if any(feature.kind in (LINE, CONCAVE) for feature in features_of(one.corners)):
-            yield from _rows_of(one, other, False)
+    for first, other in pairs:
+        yield from _rows_of(other, first, True)
+        if any(feature.kind in (LINE, CONCAVE) for feature in features_of(first.corners)):
+            yield from _rows_of(first, other, False)
 
 
 def check_two_bodies(m: Model, what: str, pairs: Sequence[tuple[Outline, Outline]]) -> None:
     """Raise ModelError for two outlines of one body."""
-    for one, other in pairs:
-        if one.body is other.body:
+    for first, other in pairs:
+        if first.body is other.body:
             raise ModelError(
-                f"{m.name}: {what}: outlines '{one.name}' and '{other.name}' are both of '{one.body.name}', which "
+                f"{m.name}: {what}: outlines '{first.name}' and '{other.name}' are both of '{first.body.name}', which "
                 "does not touch itself; name two bodies"
             )
 

@@ -27,7 +27,7 @@ from shared.stage.paths import shown_file
 
 TOUCH, PUSH = "outline_touch", "outline_force"
 WALL = 1.0
-"""What is solid round a place ends this far from the outline (rmm)."""
+"""Solid matter round a place ends this far from the outline (rmm)."""
 EASED = 0.3
 """Chamfer of the edges (rmm)."""
 

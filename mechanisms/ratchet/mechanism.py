@@ -35,7 +35,7 @@ def wheel_path(p: Params) -> list[tuple[float, float]]:
 def build(p: Params) -> Mechanism:
     """The catch turns on ground, the pusher on the lever."""
     m = Mechanism("ratchet")
-    wheel, lever = m.body("wheel"), m.bar("lever", 0.12)
+    wheel, lever = m.body("wheel", mass=0.15, inertia=1.7e-4), m.bar("lever", 0.12, mass=0.03)
     m.revolute("axle", m.ground.at(0, 0), wheel.origin)
     m.revolute("hub", m.ground.at(0, 0), lever.start)
     m.drive_angle("hand", lever, harmonic(p.swing, p.rate, mean=1.9))
@@ -43,7 +43,7 @@ def build(p: Params) -> Mechanism:
     x, y = p.pawl
     places = {"catch": (m.ground.at(-x, -y), 3.2), "pusher": (lever.at(hypot(x, y), 0), -2.27)}
     for name, (pin, angle) in places.items():
-        pawl = m.body(name)
+        pawl = m.body(name, mass=0.02, com=(0.02, 0), inertia=8e-6)
         m.revolute(f"{name}_pin", pin, pawl.origin)
         m.outline(pawl, PAWL)
         m.outline_contact(f"{name}_click", wheel, pawl)

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mbsd import Mechanism, ModelError, Solution, circle, spline_through
+from mbsd.model.outlines.geometry import depths_in
 
 
 class Books(NamedTuple):
@@ -78,17 +79,5 @@ def _depth(m: Mechanism, sol: Solution) -> float:
             c, s = math.cos(seen.theta[k]), math.sin(seen.theta[k])
             paths.append(path @ np.array([[c, s], [-s, c]]) + (seen.x[k], seen.y[k]))
         for first, other in (paths, paths[::-1]):
-            deep = max([deep, *(_inside(first, p) for p in other)])
+            deep = max(deep, float(depths_in(first, other).max()))
     return deep
-
-
-def _inside(path: np.ndarray, p: np.ndarray) -> float:
-    """Return how far a point is inside a closed path (n, 2); 0 outside."""
-    a, b = path[:-1], path[1:]
-    over = (a[:, 1] > p[1]) != (b[:, 1] > p[1])
-    x = a[over, 0] + (p[1] - a[over, 1]) / (b[over, 1] - a[over, 1]) * (b[over, 0] - a[over, 0])
-    if (x > p[0]).sum() % 2 == 0:
-        return 0.0
-    step = b - a
-    share = np.clip(((p - a) * step).sum(axis=1) / np.maximum((step**2).sum(axis=1), 1e-300), 0.0, 1.0)
-    return float(np.hypot(*(a + share[:, None] * step - p).T).min())

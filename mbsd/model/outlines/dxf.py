@@ -12,8 +12,10 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
+
 from mbsd.base.errors import ModelError
-from mbsd.model.outlines.geometry import Corner
+from mbsd.model.outlines.geometry import Corner, spline_corners
 
 UNITS = {0: 1e-3, 1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0}
 """Metres by the number of $INSUNITS; a drawing without one is in millimetres."""
@@ -103,11 +105,7 @@ def _piece(kind: str, groups: list[tuple[int, str]]) -> Piece:
         points = [float(value) for code, value in groups if code in (11, 21)]
         if not points:
             raise ValueError("a spline without fit points")
-        import numpy as np
-
-        from mbsd.model.outlines import _spline_corners
-
-        return _spline_corners(np.array(points).reshape(-1, 2), False, None)
+        return spline_corners(np.array(points).reshape(-1, 2), False, None)
     return []
 
 

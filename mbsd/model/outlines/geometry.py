@@ -140,6 +140,18 @@ def flattened(corners: Sequence[Corner], chord: float) -> tuple[list[tuple[float
     return [*points, points[0]], pieces
 
 
+def depths_in(path: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Return (k,) how far places (k, 2) are inside a path (n, 2), negative outside; its last point is the first."""
+    start, step = path[:-1], np.diff(path, axis=0)
+    to = places[:, None] - start
+    share = np.clip((to * step).sum(axis=2) / np.maximum((step**2).sum(axis=1), 1e-300), 0.0, 1.0)
+    far = np.hypot(*np.moveaxis(to - share[..., None] * step, 2, 0)).min(axis=1)
+    over = (start[:, 1] > places[:, 1:]) != (path[1:, 1] > places[:, 1:])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        right = to[..., 1] / step[:, 1] * step[:, 0] > to[..., 0]
+    return np.where((over & right).sum(axis=1) % 2 == 1, far, -far)
+
+
 def size_of(corners: Sequence[Corner]) -> float:
     """Return the diagonal of the box around corners (m)."""
     points = np.array(flattened(corners, CHORD)[0]) if len(corners) > 1 else np.zeros((1, 2))

@@ -63,7 +63,7 @@ def tabulate_pairs(
     packed: Packed, drives: np.ndarray, q: np.ndarray, v: np.ndarray, phi: np.ndarray, compact: np.ndarray,
     gamma: np.ndarray, held: np.ndarray | None,
 ) -> None:  # fmt: skip
-    """Tabulate along a motion q, v (T, 3 nb) with rows ``held`` (T, m), None: none, each row with its place."""
+    """Tabulate along a motion q, v (T, 3 nb), each row with its place, where rows ``held`` (T, m)."""
     rows, relative = outline_rows(packed), packed.ws.relative
     touched = [at for row in rows for at in (row.relative, row.way) if at >= 0]
     kept = relative[touched, LAST].copy()

@@ -20,11 +20,11 @@ FLOOR = [(-3.0, 0.0), (-3.0, -0.1), (3.0, -0.1), (3.0, 0.0)]
 
 def same_motion(first: Mechanism, second: Mechanism, body: str, time: float, within: float) -> None:
     """Compare the motions of a body, and the events, of two mechanisms."""
-    found, other = (m.simulate(time, steps=100) for m in (first, second))
+    sol, second_sol = (m.simulate(time, steps=100) for m in (first, second))
     for name in ("x", "y", "theta", "vx", "vy", "omega"):
-        a, b = getattr(found.body(body), name), getattr(other.body(body), name)
+        a, b = getattr(sol.body(body), name), getattr(second_sol.body(body), name)
         assert np.abs(a - b).max() < within * max(1.0, np.abs(b).max()), name
-    hits = [[(e.time, e.impulse) for e in sol.events if e.what == "impact"] for sol in (found, other)]
+    hits = [[(e.time, e.impulse) for e in each.events if e.what == "impact"] for each in (sol, second_sol)]
     whole = min(len(hits[0]), 8)  # the last rebounds that count depend on the size
     assert whole > 0
     assert np.allclose(hits[0][:whole], hits[1][:whole], atol=1e-9)

@@ -7,7 +7,8 @@ By Poisson's law with Coulomb friction in both phases of an impact:
 
 For one contact without friction this is Newton's law, g'+ = -e g'-. Impacts pass on in rounds: a round takes the
 contacts that approach, all at once; those that approach by its impulses are the next round, as in Newton's cradle.
-Contacts that were struck again and again without rebound, as of a pawl in a corner, push in all further rounds.
+Where there are outlines, contacts struck again and again without rebound, as of a pawl in a corner, push in all
+further rounds.
 Friction of joints is left out of impacts. Then contacts that do not separate push so that gaps do not close, and slide
 or stick as joints may (sticking/deciding.py). A rebound too slow to count ends here: its rate must not go on into
 accelerations, which would turn bodies that two contacts hold.
@@ -32,7 +33,7 @@ from mbsd.equations.joint_friction import SENSE
 ROUNDS = 200
 """Rounds of an impact; after so many, all closed contacts are solved at once without rebound."""
 AGAIN = 3
-"""Times that a contact is struck without rebound in an impact, after which it pushes with the others."""
+"""Times that a contact is struck without rebound in an impact, after which it pushes with the others, of outlines."""
 CREEP = 1e-6
 """Part of the rates that count as zero, beyond which a contact that carries nothing still closes."""
 
@@ -94,6 +95,7 @@ def _strike(dyn, scratch, contacts, v):
     vector = contacts.vector
     normal = vector[arrays.NORMAL]
     struck = contacts.chosen[arrays.STRUCK]
+    most = AGAIN if contacts.outlines.shape[0] > 0 else ROUNDS
     for k in range(count):
         struck[k] = 0
         if k >= gaps:
@@ -119,7 +121,7 @@ def _strike(dyn, scratch, contacts, v):
             vector[arrays.GIVEN, k] = 0.0 if none else contacts.number[k, arrays.RESTITUTION]
             bounces = bounces or (taking[k] != 0 and vector[arrays.GIVEN, k] != 0.0)
         for k in range(gaps):
-            if struck[k] >= AGAIN and not bounces:
+            if struck[k] >= most and not bounces:
                 taking[k] = 1
             elif taking[k] != 0 and vector[arrays.GIVEN, k] == 0.0:
                 struck[k] += 1

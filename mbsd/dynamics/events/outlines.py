@@ -32,7 +32,7 @@ def forget_pairs(scratch, contacts):
 
 @internal
 def keep_pairs(dyn, scratch, contacts, t, q):
-    """Let rows that have just closed keep their pairs at a pose q (3 nb,), and those that are open keep none."""
+    """Let rows that have just closed keep their pairs at a pose q (3 nb,), and open rows none."""
     if contacts.outlines.shape[0] == 0:
         return
     read_gaps(dyn, scratch, t, q)

@@ -1,4 +1,4 @@
-"""Two outlines that touch: features of the one on body i, runs of the other on body j, and their nearest pair.
+"""Two outlines that touch: features on body i, runs on body j, and their nearest pair.
 
 A feature is a line, a convex arc (radius R >= 0; a convex corner is one of radius 0) or a concave arc. A run is a row
 of convex arcs that follow each other: a corner, a rounded corner, a lobe, a circle. Each place where two bodies touch
@@ -54,11 +54,11 @@ PLACE, ROOM, FACING, USED_END, CR, QX, QY, WX, WY, FOOT = range(4, 14)
 the run that is used; radius of the circle and its centre from marker j in the axes of i, w, and the foot's s (an angle
 on arcs)."""
 FACES, BEGIN, FINISH = 0, 1, 2
-"""What of a run is used: the arc that faces a feature, or the deeper end where none does; or one of its ends."""
+"""Parts of a run: the arc that faces a feature, or the deeper end where none does; its ends."""
 SAME, APART = 0, 1
 CODES = 1 << 24
-ROUNDING, NEAR_END = 1e-9, 1e-6
-"""Parts of a size within which a foot is on a feature, or at its end."""
+ROUNDING, NEAR_END, PASSING = 1e-9, 1e-6, 1e-3
+"""Parts of a size within which a foot is on a feature, or at its end, or where a corner passes that end."""
 
 
 @internal
@@ -87,8 +87,7 @@ def _code(run, feature):
 @internal
 def _is_corner(numbers, row):
     """Return True if a run is one corner alone."""
-    first = int(numbers[row + FIRST])
-    return int(numbers[row + END]) == first + 1 and numbers[_element_at(numbers, first) + RADIUS] == 0.0
+    return numbers[row + RUN_REACH] == 0.0
 
 
 @internal
@@ -103,7 +102,7 @@ def _faces(numbers, e, dx, dy):
 
 @internal
 def _measure(numbers, relative, f, px, py, r):
-    """Return the gap of a circle of radius r at (px, py) of marker j from feature f; its foot goes to the scratch."""
+    """Return the gap of a circle of radius r at (px, py) of marker j from feature f; notes its foot."""
     c = math.cos(relative[A])
     s = math.sin(relative[A])
     qx = c * px - s * py
@@ -126,7 +125,7 @@ def _measure(numbers, relative, f, px, py, r):
 
 @internal
 def stand(numbers, relative, run, f, choice):
-    """Return the gap of a run from feature f, whatever the foot is, and leave what faces it in the scratch.
+    """Return the gap of a run from feature f, wherever the foot is, and note which arc faces it.
 
     ``choice``: what of the run is used.
     """
@@ -195,7 +194,7 @@ def _scale(numbers, f):
 
 @internal
 def _is_on(numbers, relative, feature):
-    """Return True if the foot in the scratch is on a feature, or a little beyond a concave corner at its end."""
+    """Return True if the foot in the scratch is on a feature, or just beyond its concave corner."""
     f = feature_at(numbers, feature)
     count = int(numbers[FEATURES])
     before = numbers[feature_at(numbers, (feature + count - 1) % count) + LINKED]
@@ -212,8 +211,59 @@ def _is_on(numbers, relative, feature):
 
 
 @internal
+def _passes_corner(numbers, relative, run, feature, choice):
+    """Return True if a corner or end in the scratch passes a corner of the outline without a touch.
+
+    The feature's normal is then none of those there, so the bodies would overlap anywhere else on the feature.
+    """
+    row = run_at(numbers, run)
+    if choice == FACES and not _is_corner(numbers, row):
+        return False
+    f = feature_at(numbers, feature)
+    count = int(numbers[FEATURES])
+    near = PASSING * numbers[f + SPAN]
+    at_end = relative[FOOT] > numbers[f + SPAN] - near and _is_convex_corner(numbers, f, (feature + 1) % count)
+    before = (feature + count - 1) % count
+    at_begin = relative[FOOT] < near and _is_convex_corner(numbers, feature_at(numbers, before), before)
+    if not (at_end or at_begin):
+        return False
+    dx = -numbers[f + T0Y]
+    dy = numbers[f + T0X]
+    if numbers[f + KIND] != LINE:
+        dx = -numbers[f + KIND] * relative[WX]
+        dy = -numbers[f + KIND] * relative[WY]
+    c = math.cos(relative[A])
+    s = math.sin(relative[A])
+    return not _end_faces(numbers, row, choice, c * dx + s * dy, c * dy - s * dx)
+
+
+@internal
+def _end_faces(numbers, row, choice, dx, dy):
+    """Return True if the normals at an end of a run include the direction (dx, dy) of marker j's axes."""
+    first = int(numbers[row + FIRST])
+    end = int(numbers[row + END])
+    normal = U0X if choice == BEGIN else U1X
+    for k in range(end - first):
+        e = _element_at(numbers, first + k if choice == BEGIN else end - 1 - k)
+        if numbers[e + RADIUS] > 0.0:
+            off = numbers[e + normal] * dy - numbers[e + normal + 1] * dx
+            ahead = numbers[e + normal] * dx + numbers[e + normal + 1] * dy
+            return abs(off) <= ROUNDING * (abs(dx) + abs(dy)) and ahead > 0.0
+        if _faces(numbers, e, dx, dy):
+            return True
+    return False
+
+
+@internal
+def _is_convex_corner(numbers, linked, feature):
+    """Return True if a feature is a corner, and the one that stands at ``linked`` goes on to the next."""
+    f = feature_at(numbers, feature)
+    return numbers[linked + LINKED] != 0.0 and numbers[f + KIND] == CONVEX and numbers[f + SIZE] == 0.0
+
+
+@internal
 def touches(numbers, relative, feature):
-    """Return True if the circle in the scratch may touch a feature: none is left out, no corner is on a corner."""
+    """Return True if the circle in the scratch may touch a feature: not left out, no two corners."""
     f = feature_at(numbers, feature)
     corners = numbers[f + KIND] == CONVEX and numbers[f + SIZE] == 0.0 and relative[CR] == 0.0
     return numbers[f + LEFT_OUT] == 0.0 and not corners
@@ -221,7 +271,7 @@ def touches(numbers, relative, feature):
 
 @internal
 def _follow(numbers, relative, run, feature):
-    """Go from a feature along its links to the one that the foot is on; leaves ROOM, returns the feature and gap."""
+    """Go along the links to the feature that the foot is on; notes ROOM, returns feature and gap."""
     count = int(numbers[FEATURES])
     way = 0
     gap = 0.0
@@ -257,7 +307,7 @@ def _follow(numbers, relative, run, feature):
 
 @internal
 def search(numbers, relative, first, end, skip_run, skip, skip_foot):
-    """Return run, feature and gap of the nearest pair of runs ``first`` to ``end``, -1 where there is none.
+    """Return run, feature and gap of the nearest pair of runs ``first`` to ``end``, -1 without any.
 
     Where run ``skip_run`` has a place on feature ``skip``, that is skipped.
     """
@@ -286,6 +336,8 @@ def search(numbers, relative, first, end, skip_run, skip, skip_foot):
                 if choice == FACES and relative[FACING] == 0.0:
                     continue
                 if gap <= -numbers[DEEPEST] or not _is_on(numbers, relative, feature):
+                    continue
+                if _passes_corner(numbers, relative, run, feature, choice):
                     continue
                 side = APART
                 if run == skip_run:
@@ -323,7 +375,7 @@ def _side_of(numbers, relative, feature, skip, skip_foot):
 
 @internal
 def _is_in(numbers, relative, feature, gap):
-    """Return True if the circle in the scratch enters the outline by a feature, and not by the other side of it.
+    """Return True if the circle in the scratch enters the outline by a feature, from outside.
 
     Its point there is then inside, and no feature beyond the next ones is much nearer to it; or a corner is in it.
     """
@@ -364,7 +416,7 @@ def _is_in(numbers, relative, feature, gap):
 
 @internal
 def _distances(numbers, f, x, y):
-    """Return how far a point (x, y) is from a feature, and from the concave corner at its end; infinite if not."""
+    """Return how far a point is from a feature, and from a concave corner at its end, else infinity."""
     wx = x - numbers[f + FEATURE_X]
     wy = y - numbers[f + FEATURE_Y]
     size = numbers[f + SIZE]
@@ -444,7 +496,7 @@ def fill_gap(numbers, relative, out):
 
 @internal
 def fill_slid(numbers, relative, out):
-    """Fill out with how far the two have slid at this row's pair (m), from where the outline and the run begin."""
+    """Fill out with how far the two have slid at this row's pair (m)."""
     clear(out)
     feature, _ = find_pair(numbers, relative)
     if feature < 0:
@@ -479,7 +531,7 @@ def fill_slid(numbers, relative, out):
 
 @internal
 def _run_slid(numbers, relative, run, phi):
-    """Return the length along a run from its begin to where its normal has the angle phi (rad) in the axes of i."""
+    """Return the length along a run up to where its normal has the angle phi (rad) in the axes of i."""
     row = run_at(numbers, run)
     first = int(numbers[row + FIRST])
     end = int(numbers[row + END])

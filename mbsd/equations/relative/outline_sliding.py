@@ -1,4 +1,4 @@
-"""Outline sliding constraint: how far the two bodies have slid on each other where their outlines touch.
+"""Outline sliding constraint: how far two bodies have slid on each other where outlines touch.
 
 F = s + s_run - c, counted from ZERO: arc length of the foot on the outline of body i and that on the run of body j,
 which they pass in opposite directions, so that F stands still while they roll; see outline_features.py. Once round a

@@ -76,7 +76,7 @@ def outline_touch(
     friction: float = 0.0,
     static_friction: float | None = None,
 ) -> Joint:
-    """Add one row of :func:`outline_contact`: ``runs`` of an outline about marker j touch one about marker i.
+    """Add a row of :func:`outline_contact`: ``runs`` of outline j touch outline i.
 
     Outlines are corners (x, y, bulge) in the axes of their markers (m). ``second``: the place beside the nearest one.
     ``arcs``: convex arcs of outline i are touched, too, and not its lines and concave arcs alone.
@@ -93,7 +93,7 @@ def outline_touch(
 
 
 def plain_outline(what: str, corners: Any) -> list[list[float]]:
-    """Return corners as plain data, the way round that they are given. Raises ModelError for what is no outline."""
+    """Return corners as plain data, in their order. Raises ModelError for what is no outline."""
     try:
         hole = signed_area(tuples_of(corners)) < 0.0
     except (TypeError, ValueError):
@@ -110,7 +110,7 @@ def outline_contact(
     friction: float = 0.0,
     static_friction: float | None = None,
 ) -> tuple[Joint, ...]:
-    """Let outlines of two bodies touch, rigidly, and return the rows of the contact, ``name 1``, ``name 2`` and so on.
+    """Let outlines of two bodies touch rigidly, and return the rows ``name 1``, ``name 2`` and so on.
 
     ``a`` and ``b``: outlines, or bodies with all of theirs, or names of either. Their impacts, resting, sliding and
     sticking are those of the other rigid contacts; ``restitution`` (0 to 1) and ``friction`` as there. Raises
@@ -168,23 +168,23 @@ def outlines_given(m: Model, what: str, given: Outline | Body | str) -> list[Out
     if isinstance(given, Outline):
         if m.outlines.get(given.name) is not given:
             raise ModelError(f"{m.name}: {what}: outline '{given.name}' is of another mechanism; add it with m.outline")
-        found = [given]
+        outlines = [given]
     elif isinstance(given, str) and given in m.outlines and given not in m.bodies:
-        found = [m.outlines[given]]
+        outlines = [m.outlines[given]]
     else:
         name = given.name if isinstance(given, Body) else given
         if not isinstance(name, str) or name not in m.bodies:
             raise ModelError(f"{m.name}: {what}: {no_such('body or outline', name, [*m.bodies, *m.outlines])}")
-        found = [outline for outline in m.outlines.values() if outline.body.name == name]
-        if not found:
+        outlines = [outline for outline in m.outlines.values() if outline.body.name == name]
+        if not outlines:
             raise ModelError(
                 f"{m.name}: {what}: '{name}' has no outline; give it one: m.outline({name}, [(x, y), ...])"
             )
-    for outline in found:
+    for outline in outlines:
         count = len(features_of(outline.corners))
         if count >= MOST_RUNS:
             raise ModelError(
                 f"{m.name}: {what}: outline '{outline.name}' has {count} lines, arcs and corners; {MOST_RUNS} are the "
                 "most. Give fewer points, or a larger tolerance= of its splines"
             )
-    return found
+    return outlines

@@ -86,16 +86,16 @@ def _entities(pairs: list[tuple[int, str]]) -> Iterator[tuple[str, list[tuple[in
 
 def _piece(kind: str, groups: list[tuple[int, str]]) -> Piece:
     """Return the corners of an entity; none of one that is no curve."""
-    one = {code: float(value) for code, value in groups if 10 <= code < 60}
+    numbers = {code: float(value) for code, value in groups if 10 <= code < 60}
     if kind == "LINE":
-        return [(one[10], one[20], 0.0), (one[11], one[21], 0.0)]
+        return [(numbers[10], numbers[20], 0.0), (numbers[11], numbers[21], 0.0)]
     if kind == "CIRCLE":
-        x, y, radius = one[10], one[20], one[40]
+        x, y, radius = numbers[10], numbers[20], numbers[40]
         return [(x + radius, y, 1.0), (x - radius, y, 1.0), (x + radius, y, 0.0)]
     if kind == "ARC":
-        first, last = math.radians(one[50]), math.radians(one[51])
+        first, last = math.radians(numbers[50]), math.radians(numbers[51])
         sweep = (last - first) % (2 * math.pi) or 2 * math.pi
-        x, y, radius = one[10], one[20], one[40]
+        x, y, radius = numbers[10], numbers[20], numbers[40]
         half = math.tan(sweep / 8)
         angles = (first, first + sweep / 2, first + sweep)
         return [(x + radius * math.cos(a), y + radius * math.sin(a), half) for a in angles]
@@ -128,7 +128,7 @@ def _polyline(kind: str, groups: list[tuple[int, str]]) -> Piece:
 
 
 def _chained(what: str, file: str | os.PathLike[str], pieces: list[Piece]) -> list[Corner]:
-    """Return one closed row of all pieces. Raises ModelError where ends are open, or there are several curves."""
+    """Return one closed row of all pieces. Raises ModelError for open ends or several curves."""
     xs = [x for piece in pieces for x, _, _ in piece]
     ys = [y for piece in pieces for _, y, _ in piece]
     near = JOINED * math.hypot(max(xs) - min(xs), max(ys) - min(ys))

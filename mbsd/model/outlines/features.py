@@ -152,7 +152,7 @@ def is_convex(corners: tuple[Corner, ...]) -> bool:
 
 
 def reach_of(corners: Sequence[Corner]) -> float:
-    """Return the largest distance of two points of an outline (m), by its bounding box; infinite of a hole."""
+    """Return the diagonal of the box around an outline (m); infinite of a hole."""
     if signed_area(corners) < 0.0:
         return math.inf
     x, y = zip(*flattened(corners, 0.1)[0], strict=True)
@@ -168,7 +168,7 @@ def circle_around(corners: Sequence[Corner]) -> tuple[float, float, float]:
 
 
 def groups_of(corners: tuple[Corner, ...], reach: float) -> list[list[int]]:
-    """Return the runs of an outline in groups of which only one at a time touches a body that reaches this far (m)."""
+    """Return groups of runs of which a body that reaches this far (m) touches only one at a time."""
     circles = [run.circle for run in runs_of(corners)]
     groups: list[list[int]] = []
     for k, (x, y, size) in enumerate(circles):

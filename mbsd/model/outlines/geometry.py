@@ -33,7 +33,7 @@ CHORD = math.radians(6.0)
 
 
 def spline_corners(points: np.ndarray, closed: bool, tolerance: float | None) -> list[Corner]:
-    """Return corners of biarcs along the cubic spline through points (k, 2); the last has bulge 0 where it is open."""
+    """Return corners of biarcs along the cubic spline through points (k, 2)."""
     from scipy.interpolate import CubicSpline
 
     if closed:
@@ -95,7 +95,7 @@ def _distance(point: np.ndarray, arc: tuple[np.ndarray, float], end: np.ndarray)
 
 
 def arc_of(first: Sequence[float], second: Sequence[float]) -> tuple[float, float, float, float]:
-    """Return centre x, y, radius (m) and sweep (rad, positive to the left) of the arc from one corner to the next."""
+    """Return centre x, y, radius (m) and sweep (rad, left positive) of the arc between two corners."""
     bulge = first[2]
     vx, vy = second[0] - first[0], second[1] - first[1]
     aside = (1.0 - bulge * bulge) / (4.0 * bulge)
@@ -122,7 +122,7 @@ def reversed_corners(corners: Sequence[Corner]) -> tuple[Corner, ...]:
 
 
 def flattened(corners: Sequence[Corner], chord: float) -> tuple[list[tuple[float, float]], list[int]]:
-    """Return points along a closed row of corners, the first at the end again, and the piece that begins at each."""
+    """Return points along corners, the first at the end again, and the piece that begins at each."""
     points: list[tuple[float, float]] = []
     pieces: list[int] = []
     for k, (first, second) in enumerate(zip(corners, [*corners[1:], corners[0]], strict=True)):
@@ -141,7 +141,7 @@ def flattened(corners: Sequence[Corner], chord: float) -> tuple[list[tuple[float
 
 
 def depths_in(path: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Return (k,) how far places (k, 2) are inside a path (n, 2), negative outside; its last point is the first."""
+    """Return (k,) how far places (k, 2) are inside a closed path (n, 2), negative outside."""
     start, step = path[:-1], np.diff(path, axis=0)
     to = places[:, None] - start
     share = np.clip((to * step).sum(axis=2) / np.maximum((step**2).sum(axis=1), 1e-300), 0.0, 1.0)

@@ -58,11 +58,11 @@ class Outline:
 
     @property
     def area(self) -> float:
-        """What it encloses (m^2)."""
+        """Area inside (m^2)."""
         return abs(signed_area(self.corners))
 
     def path(self, chord: float = CHORD) -> np.ndarray:
-        """Return (k, 2) points along it (m), on arcs one for each turn by ``chord`` (rad); the first comes last too."""
+        """Return (k, 2) points along it (m), on arcs a chord (rad) apart; the first comes last too."""
         return np.array(flattened(self.corners, chord)[0])
 
 
@@ -82,7 +82,7 @@ class SplineThrough:
 
 
 def arc_through(middle: Sequence[float], end: Sequence[float]) -> ArcThrough:
-    """Return a piece of an outline: the arc from the point before through ``middle`` to ``end`` (x, y in m)."""
+    """Return the arc of an outline from the point before through ``middle`` to ``end`` (x, y in m)."""
     return ArcThrough(number_pair("arc_through: middle", middle), number_pair("arc_through: end", end))
 
 
@@ -145,7 +145,7 @@ def _free_name(m: Model, body: Body) -> str:
 
 
 def checked_corners(what: str, path: object, hole: bool, tolerance: float | None) -> tuple[Corner, ...]:
-    """Return the corners of a path, the right way round. Raises ModelError for what is no simple closed curve."""
+    """Return the corners of a path, the right way round. Raises ModelError for no simple curve."""
     corners = _without_repeats(what, _corners_of(what, path, tolerance))
     if len(corners) == 1:
         raise ModelError(f"{what} has one point; give points all round it, or circle(radius)")

@@ -30,9 +30,10 @@ OWN = ("stiffness", "exponent", "damping", "friction", "slip_speed")
 def _interactions(force, masses):
     law = [float(force.params[name]) for name in OWN]
     first, second = tuples_of(force.params["outline_i"]), tuples_of(force.params["outline_j"])
-    out = [Interaction("outline", force.i, force.j, [*_table(first, second, True), *law, *circle_around(first)])]
+    around, other = circle_around(first), circle_around(second)
+    out = [Interaction("outline", force.i, force.j, [*_table(first, second, True), *law, *around, *other])]
     if any(feature.kind in (LINE, CONCAVE) for feature in features_of(second)):
-        numbers = [*_table(second, first, False), *law, *circle_around(second)]
+        numbers = [*_table(second, first, False), *law, *other, *around]
         out.append(Interaction("outline", force.j, force.i, numbers))
     return tuple(out)
 
@@ -90,21 +91,21 @@ def yielding_outline_contact(
     friction: float = 0.0,
     slip_speed: float = 1e-3,
 ) -> tuple[Force, ...]:
-    """Let outlines of two bodies push each other by penalty, and return the forces, one for each pair of outlines.
+    """Let outlines of two bodies push each other by penalty, and return a force for each pair.
 
     ``a`` and ``b`` are those of :func:`outline_contact`, the numbers those of :func:`contact`: each place that is in
     the other outline is pushed out with stiffness * depth^exponent * (1 + damping * rate of depth).
     """
     what = f"force '{name}'"
-    pairs = [(one, other) for one in outlines_given(m, what, a) for other in outlines_given(m, what, b)]
+    pairs = [(first, other) for first in outlines_given(m, what, a) for other in outlines_given(m, what, b)]
     check_two_bodies(m, what, pairs)
     names = [name] if len(pairs) == 1 else [f"{name} {k}" for k in range(1, len(pairs) + 1)]
     for each in names:
         new_name(m, each, "force", *connections(m))
     return tuple(
         outline_force(
-            m, each, one.body.at(0.0, 0.0), other.body.at(0.0, 0.0), one.corners, other.corners, stiffness, exponent,
-            damping, friction, slip_speed,
+            m, each, first.body.at(0.0, 0.0), other.body.at(0.0, 0.0), first.corners, other.corners,
+            stiffness, exponent, damping, friction, slip_speed,
         )
-        for each, (one, other) in zip(names, pairs, strict=True)
+        for each, (first, other) in zip(names, pairs, strict=True)
     )  # fmt: skip

@@ -1,7 +1,7 @@
 """Outlines from DXF drawings: one closed curve of lines, arcs, circles, polylines and splines.
 
-Read are LINE, ARC, CIRCLE, LWPOLYLINE, POLYLINE with VERTEX, and SPLINE by its fit points, from the ENTITIES of an
-ASCII file, in the unit of $INSUNITS. Pieces may stand in any order and direction; ends that are nearer than JOINED of
+Read are LINE, ARC, CIRCLE, LWPOLYLINE, POLYLINE with VERTEX, and SPLINE without weights, from the ENTITIES of an ASCII
+file, in the unit of $INSUNITS. Pieces may stand in any order and direction; ends that are nearer than JOINED of
 the size meet.
 """
 
@@ -21,7 +21,8 @@ UNITS = {0: 1e-3, 1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0}
 """Metres by the number of $INSUNITS; a drawing without one is in millimetres."""
 JOINED = 1e-4
 """Ends nearer than this part of the size meet."""
-Point = tuple[float, float]
+PLACES = 8
+"""Points along a spline for each of its control points."""
 Piece = list[Corner]
 """An open row of corners; the last bulge says nothing."""
 
@@ -40,7 +41,7 @@ def read_dxf(what: str, file: str | os.PathLike[str]) -> list[Corner]:
     for kind, groups in _entities(pairs):
         try:
             piece = _piece(kind, groups)
-        except (ValueError, KeyError, IndexError) as error:
+        except (ValueError, KeyError, IndexError, StopIteration) as error:
             raise ModelError(f"{what}: {file}: a {kind} of the drawing is damaged; export it again") from error
         if piece:
             pieces.append([(x * unit, y * unit, bulge) for x, y, bulge in piece])
@@ -102,11 +103,24 @@ def _piece(kind: str, groups: list[tuple[int, str]]) -> Piece:
     if kind in ("LWPOLYLINE", "POLYLINE"):
         return _polyline(kind, groups)
     if kind == "SPLINE":
-        points = [float(value) for code, value in groups if code in (11, 21)]
-        if not points:
-            raise ValueError("a spline without fit points")
-        return spline_corners(np.array(points).reshape(-1, 2), False, None)
+        return spline_corners(_spline_points(groups), False, None)
     return []
+
+
+def _spline_points(groups: list[tuple[int, str]]) -> np.ndarray:
+    """Return (k, 2) the fit points of a spline, or points along it where it has control points alone."""
+    fit, control = (
+        np.array([float(value) for code, value in groups if code in codes]).reshape(-1, 2)
+        for codes in ((11, 21), (10, 20))
+    )
+    if len(fit):
+        return fit
+    from scipy.interpolate import BSpline
+
+    degree = next(int(value) for code, value in groups if code == 71)
+    knots = [float(value) for code, value in groups if code == 40]
+    ends = knots[degree], knots[-degree - 1]
+    return BSpline(knots, control, degree)(np.linspace(*ends, PLACES * len(control) + 1))
 
 
 def _polyline(kind: str, groups: list[tuple[int, str]]) -> Piece:

@@ -209,4 +209,5 @@ def _without_contacts(state: State, events: SpaceEvents) -> arrays.Contacts:
         ),
         log=np.zeros((0, 2)),
         outside=arrays.Outside(np.zeros(1, np.int64), np.zeros(2), np.zeros(1)),
+        outlines=np.zeros((0, 4), np.int64), pairs=none, swept_place=np.zeros((0, 4), np.int64), swept=np.zeros((0, 7)),
     )  # fmt: skip

@@ -24,8 +24,9 @@ from render.article.sentences import (
     prose,
 )
 from render.insights import Insight, insights
-from render.insights.insight import Named, capital, in_words, listed, said
+from render.insights.insight import Named, capital, listed, said
 from render.view.payload import title_of
+from shared.contract.quantity import written
 
 WAYS = ("stroke", "reach", "even_return", "period")
 """Kinds that tell of ways and times, but are no trick."""
@@ -209,7 +210,7 @@ class _Steps(Sentences):
 
 
 def _number(value: float, unit: str, digits: int = 3) -> str:
-    return in_words(value, unit, digits).replace(" ", SPACE)
+    return written(value, unit, digits).replace(" ", SPACE)
 
 
 def largest_piece(solid: dict[str, Any]) -> tuple[dict[str, Any], tuple[float, float]]:

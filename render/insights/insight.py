@@ -117,12 +117,7 @@ def _number(amount: Amount, words: Mapping[str, str]) -> str:
         return words["|twice"] if abs(value - 2) < 1e-3 else words["|times"].format(factor=figures(value, digits))
     if unit == "count":
         return words.get(f"|{round(value)}", f"{round(value)}")
-    return in_words(value, unit, digits)
-
-
-def in_words(value: float, unit: str, digits: int = 3) -> str:
-    """Return a number with its unit as a sentence has it: ``38.3 mN·m``, which no one reads as metres."""
-    return written(value, unit, digits).replace("N m", "N·m")
+    return written(value, unit, digits)
 
 
 def _name(sort: Sort, name: str, words: Mapping[str, str]) -> str:

@@ -201,7 +201,7 @@ def mechanism_names() -> list[str]:
 
 
 def planar_names() -> list[str]:
-    """Return the mechanisms in the plane: pages, sites and some tests have no others yet."""
+    """Return the mechanisms in the plane: some tests have no others yet."""
     return planar_among(mechanism_names())
 
 

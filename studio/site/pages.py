@@ -16,6 +16,7 @@ from render.presets import PRESETS
 from render.view.bundle import bundle, sources_key
 from render.view.document import document, encode, sketch
 from render.view.payload import read_payload
+from shared.contract import is_in_space
 from shared.contract.quantity import counted
 from shared.stage.console import warn
 from shared.stage.files import sources_hash, whole_file, write_bytes
@@ -238,8 +239,12 @@ def _designs(name: str) -> Path:
 
     Empty where no number can be moved; missing where the process failed, which is reported and tried again.
     """
-    path = Out(name).designs
-    if stage_of(Out(name)).is_fresh():
+    out = Out(name)
+    path = out.designs
+    if is_in_space(out.motion):  # its numbers cannot be moved yet
+        path.unlink(missing_ok=True)
+        return path
+    if stage_of(out).is_fresh():
         return path
     words = [sys.executable, "-m", "studio.site.designs", name]
     try:

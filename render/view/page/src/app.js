@@ -14,7 +14,7 @@
  */
 import { Clock } from "./data/clock.js";
 import { KINDS } from "./data/kinds.js";
-import { Motion } from "./data/motion.js";
+import { motionOf } from "./data/space.js";
 import { Plots } from "./plots/plots.js";
 import { Store, same } from "./state.js";
 import { keys } from "./ui/keys.js";
@@ -52,7 +52,7 @@ export class App {
 
   take(payload) {
     this.payload = payload;
-    this.motion = new Motion(payload);
+    this.motion = motionOf(payload);
     this.clock = new Clock(payload);
   }
 
@@ -77,27 +77,35 @@ export class App {
 
   select(thing) { this.store.set({ selected: same(thing, this.store.state.selected) ? null : thing }); }
 
-  /** Where a thing is at the moment (m); null of what has no place. @returns {[number, number] | null} */
+  /** Where a thing is in the 2D view at the moment (m); null of what has no place. @returns {[number, number] | null} */
   placeOf(thing) {
-    if (!thing || !this.there(thing)) return null;
-    const { payload, motion } = this;
-    switch (thing.kind) {
-      case "joint": return motion.joint(thing.name);
-      case "point": return motion.point(thing.name);
-      case "body": return motion.centre(thing.name);
+    const { payload, motion } = this, at = this.anchorOf(thing);
+    switch (at?.kind) {
+      case "joint": return motion.joint(at.name);
+      case "point": return motion.point(at.name);
+      case "body": return motion.centre(at.name);
       case "contact": {
-        const one = payload.contacts[thing.name];
+        const one = payload.contacts[at.name];
         return [motion.linear(one.x), motion.linear(one.y)];
       }
-      default: {
-        const pair = payload[KINDS[thing.kind]][thing.name].bodies ?? [];
-        const joint = Object.keys(payload.joints).find((name) => {
-          const { pair: how, bodies } = payload.joints[name];
-          return how === "pin" && pair.length > 1 && bodies.every((body) => pair.includes(body));
-        });
-        return joint ? motion.joint(joint) : null;
-      }
+      default: return null;
     }
+  }
+
+  /** The same among the parts. @returns {[number, number, number] | null} */
+  spotOf(thing) {
+    const at = this.anchorOf(thing), tops = () => Object.values(this.payload.solid.heights.bodies);
+    if (!at) return null;
+    return at.kind === "contact" ? [...this.placeOf(thing), Math.max(0, ...tops())] : this.motion.spot(at.kind, at.name);
+  }
+
+  /** The thing itself where it has a place, else the joint between its bodies. @returns {import("./state.js").Thing | null} */
+  anchorOf(thing) {
+    if (!thing || !this.there(thing)) return null;
+    if (["joint", "point", "body", "contact"].includes(thing.kind)) return thing;
+    const { joints, space, [KINDS[thing.kind]]: { [thing.name]: { bodies: pair = [] } } } = this.payload;
+    const name = Object.keys(joints).find((one) => (space || joints[one].pair === "pin") && pair.length > 1 && joints[one].bodies.every((body) => pair.includes(body)));
+    return name ? { kind: "joint", name } : null;
   }
 
   play(on = !this.store.state.playing) {

@@ -76,11 +76,14 @@ export class Camera {
   }
 
   solid(solid, place, part) {
-    const { camera, controls } = solid, { camera: first, heights } = this.app.payload.solid;
+    const { camera, controls } = solid, { camera: first } = this.app.payload.solid;
     this.from ??= { position: camera.position.clone(), target: controls.target.clone() };
     const target = solid.world(...first.target), position = solid.world(...first.position);
     position.sub(target).multiplyScalar(this.whole(solid) * (place ? NEAR : 1));
-    if (place) target.copy(solid.world(...place, solid.parts.raised(heights[`${this.near.kind}s`]?.[this.near.name] ?? 0)));
+    if (place) {
+      const [x, y, z] = this.app.spotOf(this.near);
+      target.copy(solid.world(x, y, solid.parts.raised(z)));
+    }
     position.add(target);
     controls.target.lerpVectors(this.from.target, target, part);
     camera.position.copy(new Vector3().lerpVectors(this.from.position, position, part));

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.special import ellipk
 
-from mbsd import Mechanism, constant_rate
+from mbsd import Mechanism, MechanismError, constant_rate
 from mechanisms.cam_follower import mechanism as cam_follower
 from mechanisms.geneva_drive import mechanism as geneva_drive
 from mechanisms.quick_return import mechanism as quick_return
@@ -67,6 +67,20 @@ def test_the_return_of_a_crank_rocker_is_that_of_its_dead_points() -> None:
     assert first(motion, "dead_point").number == pytest.approx(stretched, abs=1e-4)
     ends = [math.acos((c * c + d * d - (b + s * a) ** 2) / (2 * c * d)) for s in (-1, 1)]
     assert first(motion, "stroke").number == pytest.approx(ends[1] - ends[0], abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("lengths", "template"),
+    [((0.04, 0.12, 0.09, 0.12), "limit_crank"), ((0.03, 0.12, 0.08, 0.11), "limit_crank_folded")],
+)
+def test_a_crank_turns_round_up_to_its_limit_and_no_further(
+    lengths: tuple[float, float, float, float], template: str
+) -> None:
+    each = first(_four_bar(lengths), "limit")
+    assert each.template == template
+    first(_four_bar((0.998 * each.number, *lengths[1:])), "limit")
+    with pytest.raises(MechanismError):
+        _four_bar((1.002 * each.number, *lengths[1:]))
 
 
 def _four_bar(lengths: tuple[float, float, float, float], point: tuple[float, float] | None = None) -> Motion:

@@ -9,9 +9,10 @@ import numpy as np
 
 from mbsd.spatial.model.body import Body
 from mechanisms.stages.automatic.space import round as shapes
-from mechanisms.stages.automatic.space.ends import End, Line, Part
 from mechanisms.stages.automatic.space.moves import MM, Array, Sizes
+from mechanisms.stages.automatic.space.pieces import End, Line, Part
 from mechanisms.stages.automatic.space.round import across, unit
+from mechanisms.stages.automatic.space.wheels import HUB, disc_half, disc_solid
 
 FLAT = 0.6
 """Ends lie in a plane if none is farther from it, in rods."""
@@ -21,8 +22,13 @@ BOB = 2.6
 """Radius of the ball that stands for a mass at the end of a rod, in rods."""
 
 
-def body_parts(body: Body, ends: list[End], sizes: Sizes, material: str) -> tuple[list[Part], list[Line]]:
-    """Return the pieces of a body, the main one first, and lines for looking whether it meets others (mm)."""
+def body_parts(
+    body: Body, ends: list[End], sizes: Sizes, material: str, tube: float | None = None
+) -> tuple[list[Part], list[Line]]:
+    """Return the pieces of a body, the main one first, and lines for looking whether it meets others (mm).
+
+    ``tube`` is the radius of the rim of a disc that rolls.
+    """
     solids: list[cq.Shape] = []
     lines: list[Line] = []
     shape = body.shape
@@ -42,7 +48,7 @@ def body_parts(body: Body, ends: list[End], sizes: Sizes, material: str) -> tupl
                 lines += [(np.mean(nodes, axis=0), node, sizes.rod) for node in nodes]
     solids += [shapes.rod(a, b, radius) for a, b in rods]
     lines += [(a, b, radius) for a, b in rods]
-    added, extra = _carried(body, nodes, sizes)
+    added, extra = _carried(body, nodes, rods, sizes, tube)
     solids += added
     for end in ends:
         solids += end.adds
@@ -91,32 +97,48 @@ def _plate(nodes: list[Array], sizes: Sizes) -> cq.Shape | None:
     return shapes.disc(middle, normal, radius, 0.9 * sizes.rod)
 
 
-def _carried(body: Body, nodes: list[Array], sizes: Sizes) -> tuple[list[cq.Shape], list[Part]]:
-    """Return what is fused to a body's rods, and pieces on them: a disc or ball, or a ball for a mass at an end."""
+def _carried(
+    body: Body, nodes: list[Array], rods: list[tuple[Array, Array]], sizes: Sizes, tube: float | None
+) -> tuple[list[cq.Shape], list[Part]]:
+    """Return what is fused to a body's rods, and pieces on them: a disc or ball, or a ball for a mass beyond them."""
     shape, x, zero = body.shape, np.eye(3)[0], np.zeros(3)
     if shape is not None and shape.kind == "disc":
-        radius, half = MM * shape.radius, max(0.5 * MM * shape.length, 0.05 * MM * shape.radius, 0.5 * sizes.rod)
+        wheel, half = disc_solid(body, sizes, tube), disc_half(body, sizes)
         on_axis = all(np.hypot(node[1], node[2]) < 0.1 * sizes.rod for node in nodes)
-        if not on_axis:
-            return [shapes.disc(zero, x, radius, half)], []
-        hub = min(2.2 * sizes.rod, 0.8 * radius)
-        wheel = shapes.fused([shapes.disc(zero, x, radius, half)], [shapes.disc(zero, x, hub, half + 1.0)])
-        return [shapes.disc(zero, x, hub, half + 0.7 * sizes.rod)], [("disc", wheel, "brass", 1)]
+        if not (nodes and on_axis):
+            return [wheel], []
+        hub = min(2.2 * sizes.rod, 0.8 * MM * shape.radius)
+        bored = shapes.fused([wheel], [shapes.disc(zero, x, hub, half + 1.0)])
+        return [shapes.disc(zero, x, hub, half + HUB * sizes.rod)], [("disc", bored, "brass", 1)]
     if shape is not None and shape.kind == "ball":
         return [shapes.ball(zero, MM * shape.radius, unit(nodes[0]) if nodes and np.linalg.norm(nodes[0]) else x)], []
     com = MM * np.array(body.com)
-    if shape is None and len(nodes) == 1 and np.linalg.norm(com - nodes[0]) > sizes.rod:
-        pole = unit(com - nodes[0])
-        bob = shapes.ball(com, BOB * sizes.rod, pole)
-        return [shapes.ball(com, 1.2 * sizes.rod, pole)], [
-            (
-                "bob",
-                shapes.fused([bob], [shapes.ball(com, 1.2 * sizes.rod, pole), shapes.rod(nodes[0], com, sizes.rod)]),
-                "brass",
-                0,
-            )
-        ]
-    return [], []
+    start = _start_of_bob(body, com, nodes, rods, sizes)
+    if start is None:
+        return [], []
+    pole = unit(com - start)
+    held = [shapes.ball(com, 1.2 * sizes.rod, pole), shapes.rod(start, com, sizes.rod)]
+    return held, [("bob", shapes.fused([shapes.ball(com, BOB * sizes.rod, pole)], held), "brass", 0)]
+
+
+def _start_of_bob(
+    body: Body, com: Array, nodes: list[Array], rods: list[tuple[Array, Array]], sizes: Sizes
+) -> Array | None:
+    """Return where the rod to a mass beyond a body's rods begins; None if there is no such mass."""
+    if body.shape is not None or not nodes:
+        return None
+    start = min(nodes, key=lambda node: float(np.linalg.norm(com - node)))
+    if len(nodes) > 1:
+        gaps = [_distance(com, a, b) for a, b in rods]
+        if body.mass == 0.0 or len(nodes) >= MANY or min(gaps, default=np.inf) < 2.0 * BOB * sizes.rod:
+            return None
+    return start if np.linalg.norm(com - start) > sizes.rod else None
+
+
+def _distance(point: Array, a: Array, b: Array) -> float:
+    """Return the distance of a point from a rod."""
+    way = b - a
+    return float(np.linalg.norm(point - a - np.clip((point - a) @ way / (way @ way), 0.0, 1.0) * way))
 
 
 def _rim(body: Body) -> list[Line]:

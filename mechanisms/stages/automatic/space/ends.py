@@ -1,6 +1,7 @@
 """Ends of bodies in space: what each joint asks of its two bodies, of ground and of its own massless link.
 
-    revolute                  eyes side by side on a pin; on ground a journal in a bearing block
+    revolute                  eyes side by side on a pin; on ground a journal in a bearing block;
+                              a fork where a shaft ends; the hub of a disc on its axle
     cylindrical, prismatic    a shaft in a block; else a bush on a rail, round or square
     universal                 two yokes and a cross, which is the joint's link
     spherical                 a ball in a cup that opens to where its neck points
@@ -13,7 +14,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from itertools import combinations
 
 import cadquery as cq
@@ -23,7 +23,10 @@ from mbsd.spatial.model.body import Marker
 from mbsd.spatial.model.joint import Joint
 from mechanisms.stages.automatic.space import round as shapes
 from mechanisms.stages.automatic.space.moves import MM, Array, Moves
+from mechanisms.stages.automatic.space.pieces import End, Link, Stand
+from mechanisms.stages.automatic.space.pieces import Line as Line
 from mechanisms.stages.automatic.space.round import across, unit
+from mechanisms.stages.automatic.space.wheels import axle_ends, is_wheel, rims
 from shared.stage.errors import UserError
 
 AXIAL = 0.85
@@ -34,57 +37,14 @@ NECK = math.radians(24.0)
 """Half of the angle that a neck takes at its ball."""
 LEAVES = 0.45
 """Cosine to the pin above which a rod leaves an eye by an elbow."""
+HEAD = 5.4
+"""Length that a joint takes at the end of a cylinder or its rod, in rods."""
+PLAY_OF_BALL = 0.02
+"""Gap between a plate and a ball that runs on it (mm)."""
+CLEVIS = 3.4
+"""Distance of a clevis' bridge from its pin, in rods."""
 COLLAR = 0.35
 """Half width of a collar, in rods."""
-Line = tuple[Array, Array, float]
-"""Two places and a radius (mm): a round part, for looking whether it meets others."""
-Part = tuple[str, cq.Workplane, str, int]
-"""Name, shape, material and through holes of a piece besides the main one."""
-
-
-@dataclass
-class End:
-    """End of a body at a joint, in the body's frame (mm)."""
-
-    joint: str
-    node: Array
-    """Where the body's rods arrive."""
-    adds: list[cq.Shape] = field(default_factory=list)
-    cuts: list[cq.Shape] = field(default_factory=list)
-    holes: int = 0
-    parts: list[Part] = field(default_factory=list)
-    lines: list[Line] = field(default_factory=list)
-
-
-@dataclass
-class Stand:
-    """Part that a joint asks of ground: one whose middle a post must hold."""
-
-    joint: str
-    place: Array
-    axis: Array
-    shape: Callable[[Array], tuple[cq.Workplane, int]]
-    """Function of the direction to the post: the part, and its through holes."""
-    reach: float
-    """Radius of the part about its place."""
-    material: str = "aluminium"
-    ends: tuple[Array, ...] = ()
-    """Places where posts arrive, if not at ``place``."""
-    is_bored: bool = False
-    """True if a shaft comes out of it at both sides along the axis."""
-
-
-@dataclass
-class Link:
-    """The massless link of a joint: its main piece first, in its frame (mm)."""
-
-    joint: str
-    parts: list[Part]
-    lines: list[Line]
-    body: str = "ground"
-    """Body to which its z axis is nearly fixed; its x axis goes from the first to the second place of the joint."""
-    z: Array = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
-    """Direction of this axis in the body's frame."""
 
 
 class Ends:
@@ -95,10 +55,11 @@ class Ends:
         self.ends: dict[str, list[End]] = {name: [] for name in moves.m.bodies}
         self.stands: list[Stand] = []
         self.links: list[Link] = []
-        joints = moves.joints()
+        self.rims = rims(moves)
+        joints = [joint for joint in moves.joints() if joint.kind.name != "rolling"]
         self.anchors: dict[str, dict[str, Array]] = {name: {} for name in moves.m.bodies}
         for joint in joints:
-            for marker in (joint.i, joint.j):
+            for marker in (joint.j,) if joint.kind.name == "point_on_plane" else (joint.i, joint.j):
                 self.anchors[marker.body.name][joint.name] = moves.place(marker)
         self._refuse_meeting_joints()
         places = [moves.world(marker.body.name, moves.place(marker))[:, 0] for j in joints for marker in (j.i, j.j)]
@@ -122,7 +83,7 @@ class Ends:
         made: dict[str, Callable[[Joint], None]] = {
             "revolute": self._revolute, "cylindrical": self._sliding, "prismatic": self._sliding,
             "universal": self._universal, "spherical": self._spherical, "distance": self._rod,
-            "rod_with_fork": self._rod,
+            "rod_with_fork": self._rod, "point_on_plane": self._track,
         }  # fmt: skip
         if joint.kind.name not in made:
             raise UserError(
@@ -135,6 +96,20 @@ class Ends:
         if "ground" in joint.bodies:
             self._journal(joint)
             return
+        for wheel, holder in ((joint.i, joint.j), (joint.j, joint.i)):
+            if is_wheel(wheel):
+                room = MM * wheel.body.shape.radius + self.rims.get(wheel.body.name, 0.0)
+                both = axle_ends(joint.name, wheel, holder, self._toward(holder), self.sizes, room)
+                for marker, end in zip((wheel, holder), both, strict=True):
+                    self.ends[marker.body.name].append(end)
+                return
+        for shaft, other in ((joint.i, joint.j), (joint.j, joint.i)):
+            if self._is_shaft(shaft.body.name, joint):
+                self._clevis(joint, shaft, other)
+                return
+            if self._has_rest(shaft) and self._runs_along(shaft) and not self._runs_along(other):
+                self._neck(joint, shaft, other)
+                return
         side = self._nearer_side(joint)
         for marker, way in ((joint.i, 1.0), (joint.j, -1.0)):
             arm = self._side_of_arm(marker)
@@ -143,6 +118,39 @@ class Ends:
                 break
         for marker, way in ((joint.i, side), (joint.j, -side)):
             self._eye(joint, marker, way, pinned=marker is joint.i)
+
+    def _is_shaft(self, body: str, joint: Joint) -> bool:
+        """Return True if a body is a shaft in a bearing of ground whose axis meets that of a joint at right angles."""
+        for bearing in self.moves.joints():
+            if bearing.kind.name == "revolute" and {body, "ground"} == {*bearing.bodies}:
+                own = self._sides(bearing)[0]
+                at = joint.i if joint.i.body.name == body else joint.j
+                way, axis = self.moves.place(at) - self.moves.place(own), np.array(own.axis)
+                meets = np.linalg.norm(np.cross(way, axis)) < 0.1 * self.sizes.rod
+                return bool(meets and abs(axis @ np.array(at.axis)) < 1e-3)
+        return False
+
+    def _clevis(self, joint: Joint, shaft: Marker, other: Marker) -> None:
+        """Shape the fork in which a shaft ends, the eye between its cheeks and the pin through both."""
+        s, place, axis = self.sizes, self.moves.place(shaft), np.array(shaft.axis)
+        inner, wall, width, bridge = s.eye[1] + s.play, 0.9 * s.rod, 1.5 * s.rod, 1.2 * s.rod
+        back = across(axis, self._toward(shaft) - place)
+        end = End(joint.name, place + (CLEVIS * s.rod + 0.5 * bridge) * back, holes=2)
+        end.adds = shapes.yoke(place, axis, back, inner, wall, width, CLEVIS * s.rod, bridge)
+        end.cuts = [shapes.disc(place, axis, s.pin + 0.02, inner + 2 * wall)]
+        sides = [side * (inner + wall / 2) * axis for side in (1.0, -1.0)]
+        end.lines = [(place + side, place + side + CLEVIS * s.rod * back, wall / 2) for side in sides]
+        reach = inner + wall + 0.1 * s.rod
+        heads = [
+            shapes.disc(place + e * (reach + 0.2 * s.rod) * axis, axis, 1.35 * s.pin, 0.2 * s.rod) for e in (1, -1)
+        ]
+        end.parts = [("pin", shapes.fused([shapes.disc(place, axis, s.pin, reach), *heads], []), "steel", 0)]
+        self.ends[shaft.body.name].append(end)
+        place, axis = self.moves.place(other), np.array(other.axis)
+        eye = End(joint.name, place, [shapes.disc(place, axis, s.eye[0], s.eye[1])], holes=1)
+        eye.cuts = [shapes.disc(place, axis, s.pin + s.play, s.eye[1] + 0.2 * s.rod)]
+        eye.lines = [(place - s.eye[1] * axis, place + s.eye[1] * axis, s.eye[0])]
+        self.ends[other.body.name].append(eye)
 
     def _nearer_side(self, joint: Joint) -> float:
         """Return the side along a pin on which the eye of body i stands: that of the rest of its body."""
@@ -195,13 +203,26 @@ class Ends:
             end.lines = [(boss - s.eye[1] * axis, boss + s.eye[1] * axis, s.eye[0])]
         else:
             bearing = 0.0
-            end.adds = [shapes.disc(place, axis, radius, far + 0.4 * s.rod)]
-            for way in (1.0, -1.0) if held else ():
-                at = place + way * (s.block + s.play + COLLAR * s.rod) * axis
-                end.adds.append(shapes.disc(at, axis, collar, COLLAR * s.rod))
+            end.adds = self._neck_solids(own, radius, s.block, held)
         world = np.array(ground.axis)
         self.ends[own.body.name].append(end)
         self._block(joint.name, fixed + bearing * world, world, radius + s.play)
+
+    def _neck_solids(self, marker: Marker, radius: float, half: float, held: bool) -> list[cq.Shape]:
+        """Return a shaft through a bearing of half width ``half``, with a collar at either side if it is held."""
+        s, place, axis = self.sizes, self.moves.place(marker), np.array(marker.axis)
+        out = [shapes.disc(place, axis, radius, half + s.play + (2 * COLLAR + 0.4) * s.rod)]
+        for way in (1.0, -1.0) if held else ():
+            at = place + way * (half + s.play + COLLAR * s.rod) * axis
+            out.append(shapes.disc(at, axis, radius + 0.6 * s.rod, COLLAR * s.rod))
+        return out
+
+    def _neck(self, joint: Joint, shaft: Marker, holder: Marker) -> None:
+        """Shape a body that runs along the axis as a shaft in the bush of another, as the head of a bicycle."""
+        radius, half = self._shaft_radius(shaft), 1.3 * self.sizes.block
+        end = End(joint.name, self.moves.place(shaft), self._neck_solids(shaft, radius, half, True))
+        self.ends[shaft.body.name].append(end)
+        self._bush(joint, holder, half, radius, False)
 
     def _block(self, joint: str, place: Array, axis: Array, bore: float) -> None:
         s, outer = self.sizes, bore + self.sizes.wall
@@ -210,12 +231,15 @@ class Ends:
             bored = shapes.disc(place, axis, bore, s.block + s.rod)
             return shapes.fused([shapes.disc(place, axis, outer, s.block)], [bored]), 1
 
-        self.stands.append(Stand(joint, place, axis, shape, outer, is_bored=True))
+        self.stands.append(Stand(joint, place, axis, shape, outer, bore=bore))
 
     def _sliding(self, joint: Joint) -> None:
         """Shape a shaft in a block of ground, or a bush on a rail."""
         if "ground" in joint.bodies and not self._is_arm(joint):
             self._journal(joint)
+            return
+        if self._is_telescope(joint):
+            self._telescope(joint)
             return
         s, square = self.sizes, joint.kind.name == "prismatic"
         rail, bush = joint.i, joint.j
@@ -260,6 +284,85 @@ class Ends:
                 "steel",
                 (start + holder * axis, stop - holder * axis),
             )
+        )
+
+    def _is_telescope(self, joint: Joint) -> bool:
+        """Return True if both bodies of a slide run along it, from one end each."""
+        both = (joint.i, joint.j)
+        return "ground" not in joint.bodies and all(
+            marker.body.shape is None and len(self._others(marker)) == 1 and self._runs_along(marker) for marker in both
+        )
+
+    def _telescope(self, joint: Joint) -> None:
+        """Shape a cylinder, and the rod that slides in it. Raises UserError where the stroke is too long for them."""
+        s, tube, rod = self.sizes, joint.i, joint.j
+        axis = np.array(tube.axis)
+        foot, head = self._others(tube)[0], self._others(rod)[0]
+        seen = (self.moves.seen(tube.body.name, self.moves.world(rod.body.name, head)[:, 0]) - foot) @ axis
+        way = float(np.sign(seen.mean()))
+        least, most = float(np.abs(seen).min()), float(np.abs(seen).max())
+        mouth, reach = least - HEAD * s.rod, least - (HEAD + 2.2) * s.rod
+        if most - reach > mouth - 2.5 * s.rod:
+            raise UserError(
+                f"{self.moves.m.name}: the slide '{joint.name}' moves by {most - least:.4g} mm, too far for a cylinder "
+                f"and a rod that fit into its shortest length, {least:.4g} mm. Make the stroke shorter, or write a "
+                "parts.py"
+            )
+        along = way * axis
+        middle, half = foot + 0.5 * (mouth + HEAD * s.rod) * along, 0.5 * (mouth - HEAD * s.rod)
+        end = End(joint.name, foot + (HEAD + 0.6) * s.rod * along, [shapes.disc(middle, axis, 2.0 * s.rod, half)])
+        end.cuts = [shapes.rod(foot + (HEAD + 1.2) * s.rod * along, foot + (mouth + s.rod) * along, s.rod + s.play)]
+        end.lines = shapes.tube_lines(middle, axis, 2.0 * s.rod, half)
+        self.ends[tube.body.name].append(end)
+        back = float(np.sign((self.moves.place(rod) - head) @ np.array(rod.axis))) * np.array(rod.axis)
+        self.ends[rod.body.name].append(End(joint.name, head + reach * back))
+
+    def _track(self, joint: Joint) -> None:
+        """Shape a plate under the ball of a body whose middle stays on a plane; a body has one for all of a plane."""
+        s, place, axis = self.sizes, self.moves.place(joint.i), np.array(joint.i.axis)
+        ball, end = self.moves.place(joint.j), End(joint.name, self.moves.place(joint.j))
+        own = joint.j.body.shape
+        radius = max(s.ball, 1.15 * MM * own.radius if own is not None else 0.0)
+        end.adds = [shapes.ball(ball, radius, unit(self._toward(joint.j) - ball))]
+        self.ends[joint.j.body.name].append(end)
+        plane = [
+            other for other in self.moves.joints()
+            if other.kind.name == "point_on_plane" and other.i.body is joint.i.body
+            and abs(np.array(other.i.axis) @ axis) > 1 - 1e-9
+            and abs((self.moves.place(other.i) - place) @ axis) < 1e-6 * s.rod
+        ]  # fmt: skip
+        if joint is not plane[0]:
+            return
+        seen = [
+            self.moves.seen(joint.i.body.name, self.moves.world(other.j.body.name, self.moves.place(other.j))[:, 0])
+            for other in plane
+        ]
+        points = np.concatenate(seen)
+        side = -1.0 if (self._seen_rest(joint) - place) @ axis > 0.0 else 1.0
+        below = side * (radius + PLAY_OF_BALL + s.rod)
+        middle = 0.5 * (points.min(axis=0) + points.max(axis=0)) + below * axis
+        for bearing in self.moves.joints():
+            if {*bearing.bodies} == {joint.i.body.name, "ground"}:  # the plate stands about its shaft
+                own = self._sides(bearing)[0]
+                start, shaft = self.moves.place(own), np.array(own.axis)
+                middle = start + (middle - start) @ axis / (shaft @ axis) * shaft
+        wide = float(np.linalg.norm(points - middle, axis=1).max()) + 2.4 * s.rod
+        plate = End(joint.name, middle, [shapes.disc(middle, axis, wide, s.rod)])
+        plate.lines = [(middle, middle + (wide - s.rod) * ray, s.rod) for ray in shapes.rays(axis)]
+        self._track_on(joint, plate)
+
+    def _seen_rest(self, joint: Joint) -> Array:
+        """Return where the rest of the second body of a joint is, as the first sees it at the start."""
+        rest = self.moves.world(joint.j.body.name, self._toward(joint.j))[:, 0]
+        return self.moves.seen(joint.i.body.name, rest)[0]
+
+    def _track_on(self, joint: Joint, plate: End) -> None:
+        if joint.i.body.name != "ground":
+            self.ends[joint.i.body.name].append(plate)
+            return
+        raise UserError(
+            f"{self.moves.m.name}: the plane of joint '{joint.name}' is ground's, which has no automatic part in "
+            "space; write a parts.py"
         )
 
     def _bush(self, joint: Joint, marker: Marker, half: float, width: float, square: bool) -> None:
@@ -349,10 +452,9 @@ class Ends:
             self.stands.append(Stand(joint.name, place, opening, shape, s.cup))
             return
         back = place - (s.cup + 0.6 * s.rod) * opening
-        end = End(
-            joint.name, back, [shapes.ball(place, s.cup, opening), shapes.rod(place - s.ball * opening, back, s.rod)]
-        )
-        end.cuts = self._hollow(place, opening, rim)
+        whole = [shapes.ball(place, s.cup, opening), shapes.rod(place - s.ball * opening, back, s.rod)]
+        end = End(joint.name, back, shapes.fused(whole, self._hollow(place, opening, rim)).vals())
+        end.cuts = [shapes.ball(place, s.ball + s.play, opening)]
         end.lines = [(place, back, s.cup)]
         rest = self._toward(marker) - place if self._has_rest(marker) else -opening
         if unit(rest) @ opening > -0.5:

@@ -17,8 +17,8 @@ from shared.stage.errors import UserError
 Array = NDArray[np.float64]
 POSES = 72
 """Poses of the motion at which is looked whether parts meet."""
-OF_LINK, OF_WHOLE, THICKEST = 0.085, 0.020, 0.032
-"""Radius of a rod: this part of the shortest link, within these parts of the whole mechanism."""
+OF_LINK, OF_SHORTEST, OF_WHOLE, THICKEST = 0.085, 1.0 / 6.0, 0.020, 0.032
+"""Radius of a rod: between two parts of the shortest link, so that it is within two parts of the whole mechanism."""
 MM = 1000.0
 
 
@@ -114,23 +114,23 @@ class Moves:
         """Return the radius of rods (mm)."""
         places: dict[str, list[Array]] = {name: [] for name in self.m.bodies}
         for joint in self.joints():
-            for marker in (joint.i, joint.j):
+            for marker in (joint.i, joint.j) if joint.kind.name != "rolling" else ():
                 places[marker.body.name].append(self.place(marker))
             if "length" in joint.params:
                 places[joint.name + " (rod)"] = [np.zeros(3), np.array([MM * joint.params["length"], 0, 0])]
         for name, body in self.m.bodies.items():
             if body.shape is not None and body.shape.kind == "rod":
                 places[name] += [np.zeros(3), np.array([MM * body.shape.length, 0.0, 0.0])]
-            elif name != "ground":
+            elif name != "ground" and (body.mass > 0.0 or len(places[name]) < 2):
                 places[name].append(MM * np.array(body.com))
+            if body.shape is not None and body.shape.kind == "disc":
+                places[name] += [MM * body.shape.radius * y for y in (np.eye(3)[1], -np.eye(3)[1])]
         everything = np.concatenate(
-            [
-                self.world(name, np.array(own)).reshape(-1, 3)
-                for name, own in places.items()
-                if own and name in self.poses
-            ]
+            [self.world(name, np.array(own)) for name, own in places.items() if own and name in self.poses], axis=1
         )
-        whole = float(np.linalg.norm(np.ptp(everything, axis=0)))
+        travels = any(joint.kind.name == "rolling" for joint in self.joints())
+        poses = everything[:, None] if travels else everything.reshape(1, 1, -1, 3)
+        whole = max(float(np.linalg.norm(np.ptp(pose[0], axis=0))) for pose in poses)
         links = [
             float(np.linalg.norm(a - b))
             for name, own in places.items()
@@ -142,4 +142,5 @@ class Moves:
             raise UserError(
                 f"{self.m.name}: all joints and centres of mass are on one place, so there is nothing to shape"
             )
-        return min(max(OF_LINK * min(links, default=whole), OF_WHOLE * whole), THICKEST * whole)
+        least = min(links, default=whole)
+        return min(max(OF_LINK * least, min(OF_WHOLE * whole, OF_SHORTEST * least)), THICKEST * whole)

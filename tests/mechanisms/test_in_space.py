@@ -15,6 +15,7 @@ from mbsd.spatial import Mechanism, constant_rate
 from mbsd.spatial.model.rotation import rotation_matrix
 from mechanisms.__main__ import main
 from mechanisms.bennett import mechanism as bennett
+from mechanisms.bevel_differential import mechanism as differential
 from mechanisms.bicycle import mechanism as bicycle
 from mechanisms.bricard import mechanism as bricard
 from mechanisms.delta_robot import mechanism as delta
@@ -47,7 +48,7 @@ def solution(name: str) -> Any:
 
 def test_the_gallery_has_mechanisms_in_space() -> None:
     assert {"cardan_shaft", "heavy_top", "rssr", "sarrus", "spatial_slider_crank"} <= set(NAMES)
-    assert len(NAMES) >= 15
+    assert len(NAMES) >= 16
     assert "four_bar" in planar_names()
 
 
@@ -196,6 +197,16 @@ def test_pistons_of_the_swash_plate_pump_move_as_a_cosine() -> None:
     slide = sol.joint("bore_1").slide
     wanted = p.circle * math.tan(math.radians(p.tilt)) * (np.cos(p.speed * sol.t) - 1.0)
     np.testing.assert_allclose(slide, wanted, atol=1e-12)
+
+
+def test_shafts_of_the_bevel_differential_turn_at_the_mean_of_its_cage() -> None:
+    sol, p = solution("bevel_differential"), differential.Params()
+    left, right = (sol.body(name).w[:, 0] for name in ("left", "right"))
+    cage = sol.body("cage").w[:, 0]
+    np.testing.assert_allclose(left + right, 2 * cage, atol=1e-10)
+    assert np.ptp(left - right) > 1.0
+    pin = sol.joint("pin").turn_rate
+    np.testing.assert_allclose(np.abs(pin), np.abs(left - cage) * p.side / p.planet, atol=1e-10)
 
 
 def test_the_coin_rolls_round_its_circle_at_its_closed_rate() -> None:

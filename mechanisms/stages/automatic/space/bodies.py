@@ -41,7 +41,10 @@ def body_parts(
     else:
         centre = MM * np.array(body.com) if shape is None else np.zeros(3)
         rods = _joined(nodes, centre, shape is not None, sizes)
-        if len(nodes) >= MANY and shape is None:
+        portal = _portal(ends, sizes) if shape is None else []
+        if portal:
+            rods = portal
+        elif len(nodes) >= MANY and shape is None:
             plate = _plate(nodes, sizes)
             if plate is not None:
                 solids, rods = [plate], []
@@ -85,6 +88,30 @@ def _joined(nodes: list[Array], centre: Array, carries: bool, sizes: Sizes) -> l
     else:
         pairs = [(np.mean(nodes, axis=0), node) for node in nodes]
     return [(a, b) for a, b in pairs if np.linalg.norm(b - a) > 0.05 * sizes.rod]
+
+
+def _portal(ends: list[End], sizes: Sizes) -> list[tuple[Array, Array]]:
+    """Return the rods of a frame round a shaft: two bushes on one axis, and a beam beside it to what else it holds."""
+    bushes = [end for end in ends if end.bush is not None]
+    if len(bushes) < 2:
+        return []
+    start, axis = bushes[0].node, bushes[0].bush
+    assert axis is not None
+    aside = [end.node - start - (end.node - start) @ axis * axis for end in ends]
+    if any(np.linalg.norm(aside[ends.index(bush)]) > 0.1 * sizes.rod for bush in bushes[1:]):
+        return []
+    rise = max(aside, key=lambda way: float(np.linalg.norm(way)))
+    if np.linalg.norm(rise) < 6.0 * sizes.rod:
+        return []
+    places = sorted(float((bush.node - start) @ axis) for bush in bushes)
+    beam = [start + place * axis + rise for place in (places[0], places[-1])]
+    rods = [(beam[0], beam[1]), *((bush.node, bush.node + rise) for bush in bushes)]
+    for end in ends:
+        if end.bush is None:
+            near = start + float(np.clip((end.node - start) @ axis, places[0], places[-1])) * axis + rise
+            if np.linalg.norm(end.node - near) > 0.05 * sizes.rod:
+                rods.append((near, end.node))
+    return rods
 
 
 def _plate(nodes: list[Array], sizes: Sizes) -> cq.Shape | None:

@@ -22,6 +22,7 @@ import numpy as np
 from mbsd.spatial.model.body import Marker
 from mbsd.spatial.model.joint import Joint
 from mechanisms.stages.automatic.space import round as shapes
+from mechanisms.stages.automatic.space.gears import bevel_wheels
 from mechanisms.stages.automatic.space.moves import MM, Array, Moves
 from mechanisms.stages.automatic.space.pieces import End, Link, Stand
 from mechanisms.stages.automatic.space.pieces import Line as Line
@@ -55,7 +56,7 @@ class Ends:
         self.ends: dict[str, list[End]] = {name: [] for name in moves.m.bodies}
         self.stands: list[Stand] = []
         self.links: list[Link] = []
-        self.rims = rims(moves)
+        self.rims, self.bevels = rims(moves), bevel_wheels(moves)
         joints = [joint for joint in moves.joints() if joint.kind.name != "rolling"]
         self.anchors: dict[str, dict[str, Array]] = {name: {} for name in moves.m.bodies}
         for joint in joints:
@@ -66,6 +67,8 @@ class Ends:
         self.middle = np.mean(np.concatenate(places), axis=0) if places else np.zeros(3)
         for joint in sorted(joints, key=self._is_arm):  # arms lie in the plane of their other ends
             self._shape(joint)
+        for body, wheel in self.bevels.items():
+            self.ends[body].append(wheel.end(self.sizes))
 
     def _refuse_meeting_joints(self) -> None:
         for body, anchors in self.anchors.items():
@@ -98,8 +101,13 @@ class Ends:
             return
         for wheel, holder in ((joint.i, joint.j), (joint.j, joint.i)):
             if is_wheel(wheel):
-                room = MM * wheel.body.shape.radius + self.rims.get(wheel.body.name, 0.0)
-                both = axle_ends(joint.name, wheel, holder, self._toward(holder), self.sizes, room)
+                rest, front, bevel = self._toward(holder), None, self.bevels.get(wheel.body.name)
+                if bevel is not None:  # the axle comes from behind the teeth
+                    away = wheel.body.rotation @ bevel.axis
+                    rest, front = self.moves.place(holder) + holder.body.rotation.T @ away, bevel.front()
+                both = axle_ends(
+                    joint.name, wheel, holder, rest, self.sizes, self.rims.get(wheel.body.name, 0.0), front
+                )
                 for marker, end in zip((wheel, holder), both, strict=True):
                     self.ends[marker.body.name].append(end)
                 return
@@ -368,7 +376,7 @@ class Ends:
     def _bush(self, joint: Joint, marker: Marker, half: float, width: float, square: bool) -> None:
         s, place, axis = self.sizes, self.moves.place(marker), np.array(marker.axis)
         outer = width * (1.42 if square else 1.0) + s.play + s.wall
-        end = End(joint.name, place, [shapes.disc(place, axis, outer, half)], holes=1)
+        end = End(joint.name, place, [shapes.disc(place, axis, outer, half)], holes=1, bush=axis)
         gap = width + s.play
         side = np.array(marker.across)
         end.cuts = [
@@ -453,7 +461,8 @@ class Ends:
             return
         back = place - (s.cup + 0.6 * s.rod) * opening
         whole = [shapes.ball(place, s.cup, opening), shapes.rod(place - s.ball * opening, back, s.rod)]
-        end = End(joint.name, back, shapes.fused(whole, self._hollow(place, opening, rim)).vals())
+        cup = shapes.fused(whole, self._hollow(place, opening, rim)).val()
+        end = End(joint.name, back, [cup])  # pyright: ignore[reportArgumentType]
         end.cuts = [shapes.ball(place, s.ball + s.play, opening)]
         end.lines = [(place, back, s.cup)]
         rest = self._toward(marker) - place if self._has_rest(marker) else -opening

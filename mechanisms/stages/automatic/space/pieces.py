@@ -29,6 +29,8 @@ class End:
     holes: int = 0
     parts: list[Part] = field(default_factory=list)
     lines: list[Line] = field(default_factory=list)
+    bush: Array | None = None
+    """Axis of a bush, out of which a shaft comes at both sides."""
 
 
 @dataclass(eq=False)

@@ -55,16 +55,21 @@ def is_wheel(marker: Marker) -> bool:
     """Return True if a body is a disc about the axis of a joint at its middle."""
     shape = marker.body.shape
     centred = np.linalg.norm(marker.place) < 1e-6 and abs(marker.axis[0]) > 1 - 1e-9
-    return shape is not None and shape.kind == "disc" and centred
+    return bool(shape is not None and shape.kind == "disc" and centred)
 
 
-def axle_ends(name: str, wheel: Marker, holder: Marker, rest: Array, sizes: Sizes, room: float) -> tuple[End, End]:
+def axle_ends(
+    name: str, wheel: Marker, holder: Marker, rest: Array, sizes: Sizes, tube: float, front: float | None = None
+) -> tuple[End, End]:
     """Return the ends of a wheel and of the body that holds it.
 
-    ``rest`` (3,) is where the holder's rod comes from (mm, its frame), ``room`` the largest radius of the wheel (mm).
+    ``rest`` (3,) is where the holder's rod comes from (mm, its frame), ``tube`` the radius of the wheel's rim (mm),
+    ``front`` how far the wheel reaches on the far side if that is not where its hub ends (mm).
     """
     place, axis = MM * np.array(holder.place), np.array(holder.axis)
     x, zero = np.eye(3)[0], np.zeros(3)
+    assert wheel.body.shape is not None
+    room = MM * wheel.body.shape.radius + tube
     half = disc_half(wheel.body, sizes) + HUB * sizes.rod
     bored = End(name, zero, cuts=[shapes.disc(zero, x, sizes.pin + sizes.play, half + sizes.rod)], holes=1)
     way = unit(rest - place)
@@ -72,9 +77,11 @@ def axle_ends(name: str, wheel: Marker, holder: Marker, rest: Array, sizes: Size
         return bored, _fork(name, place, axis, across(axis, way), half + sizes.play, sizes, room)
     back = float(np.sign(way @ axis)) * axis
     collar, wide = half + sizes.play + 0.35 * sizes.rod, 1.7 * sizes.pin
-    node = place + (collar + 0.35 * sizes.rod) * back
-    end = End(name, node, [shapes.rod(node, place - (collar + 0.35 * sizes.rod) * back, sizes.pin)])
-    end.adds += [shapes.disc(place + side * collar * axis, axis, wide, 0.35 * sizes.rod) for side in (1.0, -1.0)]
+    node = place + (collar + 1.1 * sizes.rod) * back  # a rod across the axle passes the hub
+    tip = place - ((half if front is None else front) + sizes.play + 0.7 * sizes.rod) * back
+    end = End(name, node, [shapes.rod(node, tip, sizes.pin)])
+    nuts = (place + collar * back, tip + 0.35 * sizes.rod * back)
+    end.adds += [shapes.disc(nut, axis, wide, 0.35 * sizes.rod) for nut in nuts]
     end.lines = [(place, node, sizes.pin)]
     return bored, end
 

@@ -25,6 +25,7 @@ from mechanisms.heavy_top import mechanism as top
 from mechanisms.rolling_coin import mechanism as coin
 from mechanisms.rssr import mechanism as rssr
 from mechanisms.sarrus import mechanism as sarrus
+from mechanisms.simple_car import mechanism as car
 from mechanisms.spatial_slider_crank import mechanism as slider_crank
 from mechanisms.stages.automatic.space.machine import link_poses, solids_in_space
 from mechanisms.stages.automatic.space.moves import Moves
@@ -33,6 +34,7 @@ from mechanisms.stages.parts_files import read_mesh, stl_bytes
 from mechanisms.stages.solve.stage import solve
 from mechanisms.stewart_platform import mechanism as stewart
 from mechanisms.swash_plate_pump import mechanism as pump
+from mechanisms.wobble_engine import mechanism as wobble
 from shared.shapes.facets import volume_of
 from shared.stage.errors import UserError
 from shared.stage.paths import mechanism_names, planar_names
@@ -48,7 +50,7 @@ def solution(name: str) -> Any:
 
 def test_the_gallery_has_mechanisms_in_space() -> None:
     assert {"cardan_shaft", "heavy_top", "rssr", "sarrus", "spatial_slider_crank"} <= set(NAMES)
-    assert len(NAMES) >= 16
+    assert len(NAMES) == 18
     assert "four_bar" in planar_names()
 
 
@@ -228,6 +230,28 @@ def test_the_bicycle_has_the_eigenvalues_of_its_benchmark_and_rights_itself() ->
     lean = np.degrees(np.arcsin(-solution("bicycle").body("frame").rotation[:, 1, 2]))
     assert 3.0 < lean.max() < 6.0
     assert abs(lean[-1]) < 2.0
+
+
+def test_the_plate_of_the_wobble_engine_leans_with_its_shaft_and_does_not_turn() -> None:
+    """Its normal goes round a cone of the bend; its own turn about the normal stays small."""
+    sol, p = solution("wobble_engine"), wobble.Params()
+    bend = math.radians(p.bend)
+    normal = sol.body("plate").rotation @ np.array([math.cos(bend), 0.0, math.sin(bend)])
+    turn = p.speed * sol.t
+    cone = [np.full_like(turn, math.cos(bend)), -math.sin(bend) * np.sin(turn), math.sin(bend) * np.cos(turn)]
+    np.testing.assert_allclose(normal, np.stack(cone, axis=1), atol=1e-12)
+    assert np.abs(sol.body("plate").rotation[:, 1, 2]).max() < 0.2
+    slides = [np.ptp(sol.joint(f"cylinder_{k + 1}").slide) for k in range(p.pistons)]
+    assert min(slides) > 1.9 * p.circle * math.sin(bend)
+
+
+def test_the_simple_car_goes_round_the_circle_of_its_steering() -> None:
+    """The middle of its rear axle has the radius base / tan(steering), but for the slip of its tyres."""
+    sol, p = solution("simple_car"), car.Params()
+    late = sol.t > 0.5
+    radius = np.linalg.norm(sol.point("P").velocity, axis=1)[late] / sol.body("body").w[late, 2]
+    np.testing.assert_allclose(radius, p.base / math.tan(math.radians(p.steer)), rtol=0.02)
+    assert sol.body("wheel_rear_left").place[:, 2].min() > 0.98 * p.radius
 
 
 def test_the_shafts_of_the_schatz_mixer_turn_at_half_to_twice_each_others_rate() -> None:

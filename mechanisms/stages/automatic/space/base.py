@@ -143,14 +143,13 @@ def _floor(moves: Moves, up: Array) -> float | None:
     Raises UserError for a plane that is not level or not ground's, and for two heights.
     """
     heights: list[float] = []
-    for joint in moves.joints():
-        if joint.kind.name == "rolling":
-            height = float(moves.place(joint.i) @ up)
-            level = joint.i.body.name == "ground" and np.array(joint.i.axis) @ up > 1.0 - 1e-9
-            if not level or abs(height - (heights or [height])[0]) > 1e-6 * moves.sizes.rod:
-                raise UserError(
-                    f"{moves.m.name}: joint '{joint.name}' rolls on a plane that is not one level floor of ground, for "
-                    "which there are no automatic parts; write a parts.py"
-                )
-            heights.append(height)
+    for pair in moves.rolling():
+        height = float(moves.place(pair.plane) @ up)
+        level = pair.plane.body.name == "ground" and np.array(pair.plane.axis) @ up > 1.0 - 1e-9
+        if not level or abs(height - (heights or [height])[0]) > 1e-6 * moves.sizes.rod:
+            raise UserError(
+                f"{moves.m.name}: '{pair.name}' rolls on a plane that is not one level floor of ground, for which "
+                "there are no automatic parts; write a parts.py"
+            )
+        heights.append(height)
     return heights[0] if heights else None

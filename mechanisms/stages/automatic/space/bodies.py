@@ -6,13 +6,14 @@ from itertools import pairwise
 
 import cadquery as cq
 import numpy as np
+from scipy.spatial import ConvexHull
 
 from mbsd.spatial.model.body import Body
 from mechanisms.stages.automatic.space import round as shapes
 from mechanisms.stages.automatic.space.moves import MM, Array, Sizes
 from mechanisms.stages.automatic.space.pieces import End, Line, Part
 from mechanisms.stages.automatic.space.round import across, unit
-from mechanisms.stages.automatic.space.wheels import HUB, disc_half, disc_solid
+from mechanisms.stages.automatic.space.wheels import HUB, Rim, disc_half, disc_solid
 
 FLAT = 0.6
 """Ends lie in a plane if none is farther from it, in rods."""
@@ -23,11 +24,11 @@ BOB = 2.6
 
 
 def body_parts(
-    body: Body, ends: list[End], sizes: Sizes, material: str, tube: float | None = None
+    body: Body, ends: list[End], sizes: Sizes, material: str, rim: Rim | None = None
 ) -> tuple[list[Part], list[Line]]:
     """Return the pieces of a body, the main one first, and lines for looking whether it meets others (mm).
 
-    ``tube`` is the radius of the rim of a disc that rolls.
+    ``rim`` is that of a disc that rolls.
     """
     solids: list[cq.Shape] = []
     lines: list[Line] = []
@@ -40,7 +41,8 @@ def body_parts(
         radius = own
     else:
         centre = MM * np.array(body.com) if shape is None else np.zeros(3)
-        rods = _joined(nodes, centre, shape is not None, sizes)
+        bush = next((end.node for end in ends if end.bush is not None), None)
+        rods = _joined(nodes, centre, shape is not None, sizes, bush)
         portal = _portal(ends, sizes) if shape is None else []
         if portal:
             rods = portal
@@ -50,8 +52,8 @@ def body_parts(
                 solids, rods = [plate], []
                 lines += [(np.mean(nodes, axis=0), node, sizes.rod) for node in nodes]
     solids += [shapes.rod(a, b, radius) for a, b in rods]
-    lines += [(a, b, radius) for a, b in rods]
-    added, extra = _carried(body, nodes, rods, sizes, tube)
+    lines += [_inset(a, b, radius, radius - sizes.rod) for a, b in rods]
+    added, extra = _carried(body, nodes, rods, sizes, rim)
     solids += added
     for end in ends:
         solids += end.adds
@@ -63,6 +65,13 @@ def body_parts(
     for end in ends:
         parts += [(f"{name}_{end.joint}", *rest) for name, *rest in end.parts]
     return parts, lines + _rim(body)
+
+
+def _inset(a: Array, b: Array, radius: float, by: float) -> Line:
+    """Return the line of a rod; that of a thick one is shorter at both ends, as its round ends reach out."""
+    way = b - a
+    part = min(max(by, 0.0) / float(np.linalg.norm(way)), 0.5)
+    return a + part * way, b - part * way, radius
 
 
 def _along_x(nodes: list[Array], length: float, radius: float, sizes: Sizes) -> list[tuple[Array, Array]]:
@@ -79,14 +88,16 @@ def _along_x(nodes: list[Array], length: float, radius: float, sizes: Sizes) -> 
     return out
 
 
-def _joined(nodes: list[Array], centre: Array, carries: bool, sizes: Sizes) -> list[tuple[Array, Array]]:
-    """Return straight rods that join the ends of a body, with what it carries."""
+def _joined(
+    nodes: list[Array], centre: Array, carries: bool, sizes: Sizes, bush: Array | None
+) -> list[tuple[Array, Array]]:
+    """Return straight rods that join the ends of a body, with what it carries; many meet in its bush, if it has one."""
     if len(nodes) == 2 and not carries:
         pairs = [(nodes[0], nodes[1])]
     elif len(nodes) <= 1 or carries:
         pairs = [(node, centre) for node in nodes]
     else:
-        pairs = [(np.mean(nodes, axis=0), node) for node in nodes]
+        pairs = [(np.mean(nodes, axis=0) if bush is None else bush, node) for node in nodes]
     return [(a, b) for a, b in pairs if np.linalg.norm(b - a) > 0.05 * sizes.rod]
 
 
@@ -115,22 +126,28 @@ def _portal(ends: list[End], sizes: Sizes) -> list[tuple[Array, Array]]:
 
 
 def _plate(nodes: list[Array], sizes: Sizes) -> cq.Shape | None:
-    """Return a round plate through many ends, or None where they lie in no plane."""
+    """Return a plate with round corners through many ends, or None where they lie in no plane or on a line."""
     middle = np.mean(nodes, axis=0)
-    normal = np.linalg.svd(np.array(nodes) - middle)[2][2]
-    if max(abs((node - middle) @ normal) for node in nodes) > FLAT * sizes.rod:
+    _, spread, axes = np.linalg.svd(np.array(nodes) - middle)
+    normal = axes[2]
+    if spread[1] < sizes.rod or max(abs((node - middle) @ normal) for node in nodes) > FLAT * sizes.rod:
         return None
-    radius = max(float(np.linalg.norm(node - middle)) for node in nodes) + 1.6 * sizes.rod
-    return shapes.disc(middle, normal, radius, 0.9 * sizes.rod)
+    x = across(normal)
+    flat = (np.array(nodes) - middle) @ np.column_stack([x, np.cross(normal, x)])
+    corners = [(float(u), float(v)) for u, v in flat[ConvexHull(flat).vertices]]
+    half = 0.9 * sizes.rod
+    plane = cq.Plane(origin=tuple(middle - half * normal), xDir=tuple(x), normal=tuple(normal))
+    outline = cq.Workplane(plane).polyline(corners).close().offset2D(1.6 * sizes.rod)
+    return outline.extrude(2.0 * half).val()  # pyright: ignore[reportReturnType]
 
 
 def _carried(
-    body: Body, nodes: list[Array], rods: list[tuple[Array, Array]], sizes: Sizes, tube: float | None
+    body: Body, nodes: list[Array], rods: list[tuple[Array, Array]], sizes: Sizes, rim: Rim | None
 ) -> tuple[list[cq.Shape], list[Part]]:
     """Return what is fused to a body's rods, and pieces on them: a disc or ball, or a ball for a mass beyond them."""
     shape, x, zero = body.shape, np.eye(3)[0], np.zeros(3)
     if shape is not None and shape.kind == "disc":
-        wheel, half = disc_solid(body, sizes, tube), disc_half(body, sizes)
+        wheel, half = disc_solid(body, sizes, rim), disc_half(body, sizes)
         on_axis = all(np.hypot(node[1], node[2]) < 0.1 * sizes.rod for node in nodes)
         if not (nodes and on_axis):
             return [wheel], []

@@ -105,9 +105,7 @@ class Ends:
                 if bevel is not None:  # the axle comes from behind the teeth
                     away = wheel.body.rotation @ bevel.axis
                     rest, front = self.moves.place(holder) + holder.body.rotation.T @ away, bevel.front()
-                both = axle_ends(
-                    joint.name, wheel, holder, rest, self.sizes, self.rims.get(wheel.body.name, 0.0), front
-                )
+                both = axle_ends(joint.name, wheel, holder, rest, self.sizes, self.rims.get(wheel.body.name), front)
                 for marker, end in zip((wheel, holder), both, strict=True):
                     self.ends[marker.body.name].append(end)
                 return
@@ -227,8 +225,10 @@ class Ends:
 
     def _neck(self, joint: Joint, shaft: Marker, holder: Marker) -> None:
         """Shape a body that runs along the axis as a shaft in the bush of another, as the head of a bicycle."""
-        radius, half = self._shaft_radius(shaft), 1.3 * self.sizes.block
-        end = End(joint.name, self.moves.place(shaft), self._neck_solids(shaft, radius, half, True))
+        s, place, axis = self.sizes, self.moves.place(shaft), np.array(shaft.axis)
+        radius, half = self._shaft_radius(shaft), 1.3 * s.block
+        way = float(np.sign((self._toward(shaft) - place) @ axis)) * (half + s.play + 2 * COLLAR * s.rod)
+        end = End(joint.name, place + way * axis, self._neck_solids(shaft, radius, half, True))
         self.ends[shaft.body.name].append(end)
         self._bush(joint, holder, half, radius, False)
 

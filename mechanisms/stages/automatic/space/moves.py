@@ -74,6 +74,21 @@ class Sizes:
         return 1.25 * self.rod
 
 
+@dataclass(frozen=True)
+class Rolling:
+    """A round body on a plane: by a joint that rolls, or by the force of a tyre or contact."""
+
+    name: str
+    plane: Marker
+    wheel: Marker
+    ring: float
+    """Radius of the ring in which its rim has its middle (mm)."""
+    rim: float
+    """Radius of the rim's section (mm), 0 of a sharp edge."""
+    leans: bool
+    """True if its edge must be sharp or round: it rolls exactly, at any lean."""
+
+
 class Moves:
     """Poses of all bodies over the motion."""
 
@@ -110,6 +125,15 @@ class Moves:
         """Return the joints that hold bodies; couplings of other joints have no parts."""
         return [joint for joint in self.m.joints.values() if not joint.coupled]
 
+    def rolling(self) -> list[Rolling]:
+        """Return what rolls on planes, by joints and by forces."""
+        exact = [joint for joint in self.m.joints.values() if joint.kind.name == "rolling"]
+        forces = [force for force in self.m.forces.values() if force.kind.name in ("tyre", "contact")]
+        return [
+            Rolling(one.name, one.i, one.j, MM * one.params["ring"], MM * one.params["radius"], one in exact)
+            for one in [*exact, *(force for force in forces if force.params["heights"] is None)]
+        ]
+
     def _rod(self) -> float:
         """Return the radius of rods (mm)."""
         places: dict[str, list[Array]] = {name: [] for name in self.m.bodies}
@@ -128,8 +152,7 @@ class Moves:
         everything = np.concatenate(
             [self.world(name, np.array(own)) for name, own in places.items() if own and name in self.poses], axis=1
         )
-        travels = any(joint.kind.name == "rolling" for joint in self.joints())
-        poses = everything[:, None] if travels else everything.reshape(1, 1, -1, 3)
+        poses = everything[:, None] if self.rolling() else everything.reshape(1, 1, -1, 3)
         whole = max(float(np.linalg.norm(np.ptp(pose[0], axis=0))) for pose in poses)
         links = [
             float(np.linalg.norm(a - b))

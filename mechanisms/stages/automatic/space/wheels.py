@@ -19,6 +19,10 @@ TAPER = 1.2
 """Height of the taper of a sharp rim, in halves of the wheel's width."""
 SHARP = 0.04
 """Half of the width of a sharp rim, in halves of the wheel's width."""
+ASIDE = 0.25
+"""Cosine to the axle below which a body comes from aside, and ends in a fork."""
+Rim = tuple[float, float]
+"""Radii of the ring of a wheel that rolls, and of the section of its rim (mm); a section of 0 is a sharp edge."""
 HUB = 0.7
 """How far a hub stands out of its wheel at either side, in rods."""
 
@@ -30,13 +34,14 @@ def disc_half(body: Body, sizes: Sizes) -> float:
     return max(0.5 * MM * shape.length, 0.05 * MM * shape.radius, 0.5 * sizes.rod)
 
 
-def disc_solid(body: Body, sizes: Sizes, tube: float | None) -> cq.Shape:
-    """Return the disc of a body about its x axis; one that rolls has a round rim of radius ``tube``, or a sharp one."""
+def disc_solid(body: Body, sizes: Sizes, rim: Rim | None) -> cq.Shape:
+    """Return the disc of a body about its x axis; ``rim`` is that of one that rolls."""
     shape, x, zero = body.shape, np.eye(3)[0], np.zeros(3)
     assert shape is not None
     radius, half = MM * shape.radius, disc_half(body, sizes)
-    if tube is None:
+    if rim is None:
         return shapes.disc(zero, x, radius, half)
+    radius, tube = rim
     if tube > 0.0:
         profile = [(0, -tube), (radius, -tube), (radius + tube, 0, radius, tube), (0, tube)]
     else:
@@ -45,10 +50,13 @@ def disc_solid(body: Body, sizes: Sizes, tube: float | None) -> cq.Shape:
     return turned(profile).val().rotate(cq.Vector(0, 0, 0), cq.Vector(0, 1, 0), 90)  # pyright: ignore[reportReturnType, reportAttributeAccessIssue]
 
 
-def rims(moves: Moves) -> dict[str, float]:
-    """Return the radius of the round rim of each body that rolls on ground (mm), 0 of a sharp one."""
-    rolling = (joint for joint in moves.joints() if joint.kind.name == "rolling")
-    return {joint.j.body.name: MM * float(joint.params["radius"]) for joint in rolling if is_wheel(joint.j)}
+def rims(moves: Moves) -> dict[str, Rim]:
+    """Return the radii of ring and section of the rim of each disc that rolls (mm); a disc with a tyre stays flat."""
+    return {
+        pair.wheel.body.name: (pair.ring, pair.rim)
+        for pair in moves.rolling()
+        if is_wheel(pair.wheel) and (pair.leans or pair.rim > 0.0)
+    }
 
 
 def is_wheel(marker: Marker) -> bool:
@@ -59,21 +67,27 @@ def is_wheel(marker: Marker) -> bool:
 
 
 def axle_ends(
-    name: str, wheel: Marker, holder: Marker, rest: Array, sizes: Sizes, tube: float, front: float | None = None
+    name: str,
+    wheel: Marker,
+    holder: Marker,
+    rest: Array,
+    sizes: Sizes,
+    rim: Rim | None,
+    front: float | None = None,
 ) -> tuple[End, End]:
     """Return the ends of a wheel and of the body that holds it.
 
-    ``rest`` (3,) is where the holder's rod comes from (mm, its frame), ``tube`` the radius of the wheel's rim (mm),
+    ``rest`` (3,) is where the holder's rod comes from (mm, its frame), ``rim`` that of the wheel (rims),
     ``front`` how far the wheel reaches on the far side if that is not where its hub ends (mm).
     """
     place, axis = MM * np.array(holder.place), np.array(holder.axis)
     x, zero = np.eye(3)[0], np.zeros(3)
     assert wheel.body.shape is not None
-    room = MM * wheel.body.shape.radius + tube
+    room = MM * wheel.body.shape.radius if rim is None else sum(rim)
     half = disc_half(wheel.body, sizes) + HUB * sizes.rod
     bored = End(name, zero, cuts=[shapes.disc(zero, x, sizes.pin + sizes.play, half + sizes.rod)], holes=1)
     way = unit(rest - place)
-    if abs(way @ axis) < 0.5:
+    if abs(way @ axis) < ASIDE:
         return bored, _fork(name, place, axis, across(axis, way), half + sizes.play, sizes, room)
     back = float(np.sign(way @ axis)) * axis
     collar, wide = half + sizes.play + 0.35 * sizes.rod, 1.7 * sizes.pin

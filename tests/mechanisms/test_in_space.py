@@ -40,6 +40,9 @@ from shared.stage.errors import UserError
 from shared.stage.paths import mechanism_names, planar_names
 
 NAMES = sorted(set(mechanism_names()) - set(planar_names()))
+MANY_PIECES = {"bicycle", "bricard", "delta_robot", "governor", "sarrus", "schatz_mixer", "simple_car"}
+MANY_PIECES |= {"stewart_platform", "wobble_engine"}
+"""Machines whose solids take seconds; the others have every kind of part but a cylinder with its rod."""
 
 
 @cache
@@ -285,7 +288,9 @@ def meshes(name: str) -> tuple[dict[str, list[Any]], Moves]:
     return out, moves
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name in MANY_PIECES else name for name in NAMES]
+)
 def test_parts_are_watertight_and_no_two_bodies_share_room(name: str) -> None:
     """At eight poses of the motion, by exact intersections of the meshes."""
     from manifold3d import Manifold, Mesh

@@ -4,6 +4,11 @@ In this order, a chapter each:
 
     moves.py      poses of all bodies over the motion; one size from the lengths of the links
     round.py      round solids along any axis: rods, eyes, yokes, cups, blocks
+    pieces.py     what chapters exchange: ends, stands, links; one block for bores side by side
+    surroundings.py    where else a body is held, and how it lies to the axis of a joint
+    wheels.py     discs with rims, on axles and in forks
+    gears.py      bevel wheels with teeth
+    slides.py     cylinders with rods, balls on plates
     ends.py       what each joint asks of its two bodies, and of its own massless link
     bodies.py     a body: its ends joined by straight rods, discs and balls
     meeting.py    parts of two bodies that would meet, which is an error

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from itertools import combinations
 
 import cadquery as cq
 import numpy as np
@@ -27,21 +26,17 @@ from mechanisms.stages.automatic.space.moves import MM, Array, Moves
 from mechanisms.stages.automatic.space.pieces import End, Link, Stand
 from mechanisms.stages.automatic.space.pieces import Line as Line
 from mechanisms.stages.automatic.space.round import across, unit
+from mechanisms.stages.automatic.space.slides import is_telescope, telescope_ends, track_ends
+from mechanisms.stages.automatic.space.surroundings import Surroundings
 from mechanisms.stages.automatic.space.wheels import axle_ends, is_wheel, rims
 from shared.stage.errors import UserError
 
-AXIAL = 0.85
-"""Cosine to the axis of a joint above which a body runs along it."""
 WIDEST_CUP, WIDEST_RING = math.radians(62.0), math.radians(34.0)
 """Largest swing of a neck in a cup, and of a ball's stud in a ring."""
 NECK = math.radians(24.0)
 """Half of the angle that a neck takes at its ball."""
 LEAVES = 0.45
 """Cosine to the pin above which a rod leaves an eye by an elbow."""
-HEAD = 5.4
-"""Length that a joint takes at the end of a cylinder or its rod, in rods."""
-PLAY_OF_BALL = 0.02
-"""Gap between a plate and a ball that runs on it (mm)."""
 CLEVIS = 3.4
 """Distance of a clevis' bridge from its pin, in rods."""
 COLLAR = 0.35
@@ -57,28 +52,12 @@ class Ends:
         self.stands: list[Stand] = []
         self.links: list[Link] = []
         self.rims, self.bevels = rims(moves), bevel_wheels(moves)
-        joints = [joint for joint in moves.joints() if joint.kind.name != "rolling"]
-        self.anchors: dict[str, dict[str, Array]] = {name: {} for name in moves.m.bodies}
-        for joint in joints:
-            for marker in (joint.j,) if joint.kind.name == "point_on_plane" else (joint.i, joint.j):
-                self.anchors[marker.body.name][joint.name] = moves.place(marker)
-        self._refuse_meeting_joints()
-        places = [moves.world(marker.body.name, moves.place(marker))[:, 0] for j in joints for marker in (j.i, j.j)]
-        self.middle = np.mean(np.concatenate(places), axis=0) if places else np.zeros(3)
-        for joint in sorted(joints, key=self._is_arm):  # arms lie in the plane of their other ends
+        self.around = Surroundings(moves)
+        joints = self.around.joints
+        for joint in sorted(joints, key=self.around.is_arm):  # arms lie in the plane of their other ends
             self._shape(joint)
         for body, wheel in self.bevels.items():
             self.ends[body].append(wheel.end(self.sizes))
-
-    def _refuse_meeting_joints(self) -> None:
-        for body, anchors in self.anchors.items():
-            for (name, place), (other, another) in combinations(anchors.items(), 2):
-                if body != "ground" and np.linalg.norm(place - another) < self.sizes.rod:
-                    raise UserError(
-                        f"{self.moves.m.name}: joints '{name}' and '{other}' of '{body}' are on one place, where their "
-                        "parts would meet. Move one aside (a hinge or slide acts anywhere along its axis, a slide also "
-                        "beside it), or write a parts.py"
-                    )
 
     # -- joints -------------------------------------------------------------------------------------------------
 
@@ -101,7 +80,7 @@ class Ends:
             return
         for wheel, holder in ((joint.i, joint.j), (joint.j, joint.i)):
             if is_wheel(wheel):
-                rest, front, bevel = self._toward(holder), None, self.bevels.get(wheel.body.name)
+                rest, front, bevel = self.around.toward(holder), None, self.bevels.get(wheel.body.name)
                 if bevel is not None:  # the axle comes from behind the teeth
                     away = wheel.body.rotation @ bevel.axis
                     rest, front = self.moves.place(holder) + holder.body.rotation.T @ away, bevel.front()
@@ -110,37 +89,26 @@ class Ends:
                     self.ends[marker.body.name].append(end)
                 return
         for shaft, other in ((joint.i, joint.j), (joint.j, joint.i)):
-            if self._is_shaft(shaft.body.name, joint):
+            if self.around.is_shaft(shaft.body.name, joint):
                 self._clevis(joint, shaft, other)
                 return
-            if self._has_rest(shaft) and self._runs_along(shaft) and not self._runs_along(other):
+            if self.around.has_rest(shaft) and self.around.runs_along(shaft) and not self.around.runs_along(other):
                 self._neck(joint, shaft, other)
                 return
         side = self._nearer_side(joint)
         for marker, way in ((joint.i, 1.0), (joint.j, -1.0)):
-            arm = self._side_of_arm(marker)
+            arm = self.around.side_of_arm(marker)
             if arm:
                 side = arm * way
                 break
         for marker, way in ((joint.i, side), (joint.j, -side)):
             self._eye(joint, marker, way, pinned=marker is joint.i)
 
-    def _is_shaft(self, body: str, joint: Joint) -> bool:
-        """Return True if a body is a shaft in a bearing of ground whose axis meets that of a joint at right angles."""
-        for bearing in self.moves.joints():
-            if bearing.kind.name == "revolute" and {body, "ground"} == {*bearing.bodies}:
-                own = self._sides(bearing)[0]
-                at = joint.i if joint.i.body.name == body else joint.j
-                way, axis = self.moves.place(at) - self.moves.place(own), np.array(own.axis)
-                meets = np.linalg.norm(np.cross(way, axis)) < 0.1 * self.sizes.rod
-                return bool(meets and abs(axis @ np.array(at.axis)) < 1e-3)
-        return False
-
     def _clevis(self, joint: Joint, shaft: Marker, other: Marker) -> None:
         """Shape the fork in which a shaft ends, the eye between its cheeks and the pin through both."""
         s, place, axis = self.sizes, self.moves.place(shaft), np.array(shaft.axis)
         inner, wall, width, bridge = s.eye[1] + s.play, 0.9 * s.rod, 1.5 * s.rod, 1.2 * s.rod
-        back = across(axis, self._toward(shaft) - place)
+        back = across(axis, self.around.toward(shaft) - place)
         end = End(joint.name, place + (CLEVIS * s.rod + 0.5 * bridge) * back, holes=2)
         end.adds = shapes.yoke(place, axis, back, inner, wall, width, CLEVIS * s.rod, bridge)
         end.cuts = [shapes.disc(place, axis, s.pin + 0.02, inner + 2 * wall)]
@@ -160,9 +128,8 @@ class Ends:
 
     def _nearer_side(self, joint: Joint) -> float:
         """Return the side along a pin on which the eye of body i stands: that of the rest of its body."""
-        lean = [
-            (self._toward(marker) - self.moves.place(marker)) @ np.array(marker.axis) for marker in (joint.i, joint.j)
-        ]
+        both = (joint.i, joint.j)
+        lean = [(self.around.toward(m) - self.moves.place(m)) @ np.array(m.axis) for m in both]
         return -1.0 if lean[0] - lean[1] < -0.1 * self.sizes.rod else 1.0
 
     def _eye(self, joint: Joint, marker: Marker, way: float, pinned: bool) -> None:
@@ -173,7 +140,7 @@ class Ends:
         end = End(joint.name, middle, [shapes.disc(middle, axis, radius, half)], holes=1)
         end.cuts = [shapes.disc(middle, axis, s.pin + (0.02 if pinned else s.play), half + 0.2 * s.rod)]
         end.lines = [(middle - half * axis, middle + half * axis, radius)]
-        rest = self._toward(marker) - middle
+        rest = self.around.toward(marker) - middle
         if abs(unit(rest) @ axis) > LEAVES:  # past the head of the pin
             elbow = middle + (radius + 1.2 * s.rod) * across(axis, rest)
             end.node, end.adds = elbow, [*end.adds, shapes.rod(middle, elbow, s.rod), shapes.ball(elbow, s.rod)]
@@ -189,15 +156,15 @@ class Ends:
     def _journal(self, joint: Joint) -> None:
         """Shape a shaft in a bearing block, with collars where it does not slide."""
         s = self.sizes
-        own, ground = self._sides(joint)
+        own, ground = self.around.sides(joint)
         place, axis = self.moves.place(own), np.array(own.axis)
         fixed = MM * np.array(ground.place)
-        radius = self._shaft_radius(own)
+        radius = self.around.shaft_radius(own)
         collar, held = radius + 0.6 * s.rod, joint.kind.name == "revolute"
         far = s.block + s.play + 2 * COLLAR * s.rod
         end = End(joint.name, place)
-        if self._is_arm(joint):
-            side = self._side(joint)
+        if self.around.is_arm(joint):
+            side = self.around.side(joint)
             nodes = [(other.node - place) @ axis for other in self.ends[own.body.name]]
             offset = float(np.mean(nodes)) if nodes else 0.0
             end.node = place + offset * axis
@@ -226,8 +193,8 @@ class Ends:
     def _neck(self, joint: Joint, shaft: Marker, holder: Marker) -> None:
         """Shape a body that runs along the axis as a shaft in the bush of another, as the head of a bicycle."""
         s, place, axis = self.sizes, self.moves.place(shaft), np.array(shaft.axis)
-        radius, half = self._shaft_radius(shaft), 1.3 * s.block
-        way = float(np.sign((self._toward(shaft) - place) @ axis)) * (half + s.play + 2 * COLLAR * s.rod)
+        radius, half = self.around.shaft_radius(shaft), 1.3 * s.block
+        way = float(np.sign((self.around.toward(shaft) - place) @ axis)) * (half + s.play + 2 * COLLAR * s.rod)
         end = End(joint.name, place + way * axis, self._neck_solids(shaft, radius, half, True))
         self.ends[shaft.body.name].append(end)
         self._bush(joint, holder, half, radius, False)
@@ -243,15 +210,15 @@ class Ends:
 
     def _sliding(self, joint: Joint) -> None:
         """Shape a shaft in a block of ground, or a bush on a rail."""
-        if "ground" in joint.bodies and not self._is_arm(joint):
+        if "ground" in joint.bodies and not self.around.is_arm(joint):
             self._journal(joint)
             return
-        if self._is_telescope(joint):
-            self._telescope(joint)
+        if is_telescope(self.around, joint):
+            self._append(joint, *telescope_ends(self.around, joint))
             return
         s, square = self.sizes, joint.kind.name == "prismatic"
         rail, bush = joint.i, joint.j
-        if joint.j.body.name == "ground" or (self._runs_along(joint.j) and not self._runs_along(joint.i)):
+        if joint.j.body.name == "ground" or (self.around.runs_along(joint.j) and not self.around.runs_along(joint.i)):
             rail, bush = joint.j, joint.i
         place, axis = self.moves.place(rail), np.array(rail.axis)
         half = 1.3 * s.block
@@ -260,7 +227,7 @@ class Ends:
         low, high = float(way.min()) - half - 3.4 * s.rod, float(way.max()) + half + 3.4 * s.rod
         start, stop = place + low * axis, place + high * axis
         side = np.array(rail.across)
-        width = self._shaft_radius(rail) if self._runs_along(rail) else s.rod
+        width = self.around.shaft_radius(rail) if self.around.runs_along(rail) else s.rod
         solid = (
             shapes.box((start + stop) / 2, axis, side, ((high - low) / 2, width, width))
             if square
@@ -268,13 +235,13 @@ class Ends:
         )
         self._bush(joint, bush, half, width, square)
         if rail.body.name != "ground":
-            nodes = self._others(rail)
+            nodes = self.around.others(rail)
             node = (
                 min((start, stop), key=lambda end: float(np.linalg.norm(end - np.mean(nodes, axis=0))))
                 if nodes
                 else start
             )
-            node = place if self._runs_along(rail) else node
+            node = place if self.around.runs_along(rail) else node
             self.ends[rail.body.name].append(End(joint.name, node, [solid], lines=[(start, stop, width)]))
             return
         holder = 1.2 * s.rod
@@ -294,84 +261,13 @@ class Ends:
             )
         )
 
-    def _is_telescope(self, joint: Joint) -> bool:
-        """Return True if both bodies of a slide run along it, from one end each."""
-        both = (joint.i, joint.j)
-        return "ground" not in joint.bodies and all(
-            marker.body.shape is None and len(self._others(marker)) == 1 and self._runs_along(marker) for marker in both
-        )
-
-    def _telescope(self, joint: Joint) -> None:
-        """Shape a cylinder, and the rod that slides in it. Raises UserError where the stroke is too long for them."""
-        s, tube, rod = self.sizes, joint.i, joint.j
-        axis = np.array(tube.axis)
-        foot, head = self._others(tube)[0], self._others(rod)[0]
-        seen = (self.moves.seen(tube.body.name, self.moves.world(rod.body.name, head)[:, 0]) - foot) @ axis
-        way = float(np.sign(seen.mean()))
-        least, most = float(np.abs(seen).min()), float(np.abs(seen).max())
-        mouth, reach = least - HEAD * s.rod, least - (HEAD + 2.2) * s.rod
-        if most - reach > mouth - 2.5 * s.rod:
-            raise UserError(
-                f"{self.moves.m.name}: the slide '{joint.name}' moves by {most - least:.4g} mm, too far for a cylinder "
-                f"and a rod that fit into its shortest length, {least:.4g} mm. Make the stroke shorter, or write a "
-                "parts.py"
-            )
-        along = way * axis
-        middle, half = foot + 0.5 * (mouth + HEAD * s.rod) * along, 0.5 * (mouth - HEAD * s.rod)
-        end = End(joint.name, foot + (HEAD + 0.6) * s.rod * along, [shapes.disc(middle, axis, 2.0 * s.rod, half)])
-        end.cuts = [shapes.rod(foot + (HEAD + 1.2) * s.rod * along, foot + (mouth + s.rod) * along, s.rod + s.play)]
-        end.lines = shapes.tube_lines(middle, axis, 2.0 * s.rod, half)
-        self.ends[tube.body.name].append(end)
-        back = float(np.sign((self.moves.place(rod) - head) @ np.array(rod.axis))) * np.array(rod.axis)
-        self.ends[rod.body.name].append(End(joint.name, head + reach * back))
-
     def _track(self, joint: Joint) -> None:
-        """Shape a plate under the ball of a body whose middle stays on a plane; a body has one for all of a plane."""
-        s, place, axis = self.sizes, self.moves.place(joint.i), np.array(joint.i.axis)
-        ball, end = self.moves.place(joint.j), End(joint.name, self.moves.place(joint.j))
-        own = joint.j.body.shape
-        radius = max(s.ball, 1.15 * MM * own.radius if own is not None else 0.0)
-        end.adds = [shapes.ball(ball, radius, unit(self._toward(joint.j) - ball))]
-        self.ends[joint.j.body.name].append(end)
-        plane = [
-            other for other in self.moves.joints()
-            if other.kind.name == "point_on_plane" and other.i.body is joint.i.body
-            and abs(np.array(other.i.axis) @ axis) > 1 - 1e-9
-            and abs((self.moves.place(other.i) - place) @ axis) < 1e-6 * s.rod
-        ]  # fmt: skip
-        if joint is not plane[0]:
-            return
-        seen = [
-            self.moves.seen(joint.i.body.name, self.moves.world(other.j.body.name, self.moves.place(other.j))[:, 0])
-            for other in plane
-        ]
-        points = np.concatenate(seen)
-        side = -1.0 if (self._seen_rest(joint) - place) @ axis > 0.0 else 1.0
-        below = side * (radius + PLAY_OF_BALL + s.rod)
-        middle = 0.5 * (points.min(axis=0) + points.max(axis=0)) + below * axis
-        for bearing in self.moves.joints():
-            if {*bearing.bodies} == {joint.i.body.name, "ground"}:  # the plate stands about its shaft
-                own = self._sides(bearing)[0]
-                start, shaft = self.moves.place(own), np.array(own.axis)
-                middle = start + (middle - start) @ axis / (shaft @ axis) * shaft
-        wide = float(np.linalg.norm(points - middle, axis=1).max()) + 2.4 * s.rod
-        plate = End(joint.name, middle, [shapes.disc(middle, axis, wide, s.rod)])
-        plate.lines = [(middle, middle + (wide - s.rod) * ray, s.rod) for ray in shapes.rays(axis)]
-        self._track_on(joint, plate)
+        self._append(joint, *track_ends(self.around, joint))
 
-    def _seen_rest(self, joint: Joint) -> Array:
-        """Return where the rest of the second body of a joint is, as the first sees it at the start."""
-        rest = self.moves.world(joint.j.body.name, self._toward(joint.j))[:, 0]
-        return self.moves.seen(joint.i.body.name, rest)[0]
-
-    def _track_on(self, joint: Joint, plate: End) -> None:
-        if joint.i.body.name != "ground":
-            self.ends[joint.i.body.name].append(plate)
-            return
-        raise UserError(
-            f"{self.moves.m.name}: the plane of joint '{joint.name}' is ground's, which has no automatic part in "
-            "space; write a parts.py"
-        )
+    def _append(self, joint: Joint, first: End | None, second: End) -> None:
+        for marker, end in ((joint.i, first), (joint.j, second)):
+            if end is not None:
+                self.ends[marker.body.name].append(end)
 
     def _bush(self, joint: Joint, marker: Marker, half: float, width: float, square: bool) -> None:
         s, place, axis = self.sizes, self.moves.place(marker), np.array(marker.axis)
@@ -396,7 +292,7 @@ class Ends:
             if marker.body.name == "ground":
                 self._stand_with_yoke(joint, marker, inner, wall, width, depth, bridge)
                 continue
-            back = across(axis, self._toward(marker) - place)
+            back = across(axis, self.around.toward(marker) - place)
             end = End(joint.name, place + (depth + 0.5 * bridge) * back, holes=2)
             end.adds = shapes.yoke(place, axis, back, inner, wall, width, depth, bridge)
             end.cuts = [shapes.disc(place, axis, 0.75 * s.rod + s.play, inner + 2 * wall)]
@@ -424,9 +320,8 @@ class Ends:
         choices = []
         for ball, cup in ((joint.i, joint.j), (joint.j, joint.i)):
             if ball.body.name != "ground":
-                neck = (
-                    unit(self._toward(ball) - self.moves.place(ball)) if self._has_rest(ball) else np.array([0, 0, 1.0])
-                )
+                rest = self.around.toward(ball) - self.moves.place(ball)
+                neck = unit(rest) if self.around.has_rest(ball) else np.array([0, 0, 1.0])
                 opening, swing = self._swing(cup.body.name, self.moves.turned(ball.body.name, neck))
                 choices.append((swing, ball, cup, neck, opening))
         swing, ball, cup, neck, opening = min(choices, key=lambda choice: choice[0])
@@ -465,7 +360,7 @@ class Ends:
         end = End(joint.name, back, [cup])  # pyright: ignore[reportArgumentType]
         end.cuts = [shapes.ball(place, s.ball + s.play, opening)]
         end.lines = [(place, back, s.cup)]
-        rest = self._toward(marker) - place if self._has_rest(marker) else -opening
+        rest = self.around.toward(marker) - place if self.around.has_rest(marker) else -opening
         if unit(rest) @ opening > -0.5:
             end.adds.append(shapes.ball(back, s.rod, opening))
         else:
@@ -526,78 +421,14 @@ class Ends:
                 f"cup, and leans by {math.degrees(lean):.0f} degrees in a ring ({math.degrees(WIDEST_RING):.0f}); "
                 "write a parts.py"
             )
-        arm = self._side_of_arm(marker, axis)
-        side = arm or (1.0 if axis @ (self._toward(marker) - place) >= 0.0 else -1.0)
+        arm = self.around.side_of_arm(marker, axis)
+        side = arm or (1.0 if axis @ (self.around.toward(marker) - place) >= 0.0 else -1.0)
         ball, ring, half, stud = s.ring
         foot = place + side * (ring * math.sin(WIDEST_RING) + half + s.eye[1] + 0.2 * s.rod) * axis
         end = End(joint.name, foot, [shapes.ball(place, ball, axis), shapes.rod(place, foot, stud)])
         end.adds.append(shapes.disc(foot, axis, 1.35 * s.rod, s.eye[1]))
         end.lines = [(place, foot, s.ball)]
         return end, axis
-
-    # -- bodies about a joint -----------------------------------------------------------------------------------
-
-    def _sides(self, joint: Joint) -> tuple[Marker, Marker]:
-        """Return the markers of a joint on the moving body and on ground."""
-        return (joint.j, joint.i) if joint.i.body.name == "ground" else (joint.i, joint.j)
-
-    def _others(self, marker: Marker) -> list[Array]:
-        """Return the places of a body's other joints, and of its disc, ball or mass where it has few."""
-        own = self.moves.place(marker)
-        body = marker.body
-        near = [p for p in self.anchors[body.name].values() if np.linalg.norm(p - own) > 0.5 * self.sizes.rod]
-        shape = body.shape
-        if shape is not None and shape.kind == "rod":
-            near += [
-                p
-                for p in (np.zeros(3), np.array([MM * shape.length, 0.0, 0.0]))
-                if np.linalg.norm(p - own) > self.sizes.rod
-            ]
-        elif shape is not None and np.linalg.norm(own) > self.sizes.rod:
-            near.append(np.zeros(3))
-        elif not near and np.linalg.norm(MM * np.array(body.com) - own) > self.sizes.rod:
-            near.append(MM * np.array(body.com))
-        return near
-
-    def _has_rest(self, marker: Marker) -> bool:
-        return bool(self._others(marker))
-
-    def _toward(self, marker: Marker) -> Array:
-        """Return the place to which a body's rod leads from a joint."""
-        others = self._others(marker)
-        return np.mean(others, axis=0) if others else self.moves.place(marker) + across(np.array(marker.axis))
-
-    def _runs_along(self, marker: Marker) -> bool:
-        """Return True if a body runs along the axis of a joint."""
-        axis, own = np.array(marker.axis), self.moves.place(marker)
-        others = self._others(marker)
-        return all(abs(unit(other - own) @ axis) > AXIAL for other in others)
-
-    def _is_arm(self, joint: Joint) -> bool:
-        """Return True if a joint with ground holds a body that stands across its axis."""
-        if "ground" not in joint.bodies or joint.kind.name not in ("revolute", "cylindrical", "prismatic"):
-            return False
-        return not self._runs_along(self._sides(joint)[0])
-
-    def _side(self, joint: Joint) -> float:
-        """Return the side along the axis on which the bearing of an arm stands: away from the mechanism's middle."""
-        ground = self._sides(joint)[1]
-        return 1.0 if (MM * np.array(ground.place) - self.middle) @ np.array(ground.axis) >= -1e-6 else -1.0
-
-    def _side_of_arm(self, marker: Marker, axis: Array | None = None) -> float:
-        """Return the side of the bearing of a body that is an arm about a parallel axis; 0 if it is none."""
-        along = np.array(marker.axis) if axis is None else axis
-        for joint in self.moves.joints():
-            if marker.body.name in joint.bodies and joint.kind.name == "revolute" and self._is_arm(joint):
-                own = np.array(self._sides(joint)[0].axis)
-                if abs(own @ along) > AXIAL:
-                    return self._side(joint) * float(np.sign(own @ along))
-        return 0.0
-
-    def _shaft_radius(self, marker: Marker) -> float:
-        shape = marker.body.shape
-        along = shape is not None and shape.kind == "rod" and abs(marker.axis[0]) > AXIAL
-        return MM * shape.radius if along and shape is not None and shape.radius > 0.0 else self.sizes.rod
 
 
 def stud_axis(moves: Moves, marker: Marker, way: Array) -> tuple[Array, float]:

@@ -75,6 +75,7 @@ class BevelWheel:
         return float((np.zeros(3) - self.apex) @ self.axis) - (1.0 - FACE) * self.length * math.cos(self.cone)
 
     def _toothed(self, small: float, large: float) -> cq.Shape:
+        """Return the teeth, cut by a plane where their tips meet the back cone."""
         radius = self.length * math.sin(self.cone)
         module, back = 2.0 * radius / self.teeth, radius / math.cos(self.cone)
         count = round(self.teeth / math.cos(self.cone))
@@ -84,12 +85,13 @@ class BevelWheel:
         polar = self.cone + np.arctan((np.hypot(*own.T) - back) / self.length)
         turn = np.arctan2(own[:, 1], own[:, 0]) / math.cos(self.cone)
         turns = ((self.tooth or 0.0) + 2.0 * math.pi * np.arange(self.teeth)[:, None] / self.teeth + turn).ravel()
+        end = large / math.cos(self.cone) ** 2 / (1.0 + math.tan(self.cone) * math.tan(polar.max()))
         spread = np.tile(np.tan(polar), self.teeth)
         side = np.cross(self.axis, self.contact)
         rays = self.axis + spread[:, None] * (np.outer(np.cos(turns), self.contact) + np.outer(np.sin(turns), side))
         wires = [
             cq.Wire.makePolygon([cq.Vector(*(self.apex + height * ray)) for ray in rays], close=True)
-            for height in (small, large)
+            for height in (small, end)
         ]
         return cq.Solid.makeLoft(wires, True)
 
@@ -115,7 +117,7 @@ def _pair(moves: Moves, joint: Joint) -> list[BevelWheel] | None:
     markers = [moved_marker(part, carrier) for part in joint.coupled]
     places = [MM * marker.world_place for marker in markers]
     axes = [marker.body.rotation @ np.array(marker.axis) for marker in markers]
-    normal = np.cross(*axes)
+    normal = np.cross(axes[0], axes[1])
     if np.linalg.norm(normal) < 1e-6 or abs((places[1] - places[0]) @ normal) > 1e-6 * moves.sizes.rod:
         return None
     part = np.linalg.lstsq(np.column_stack([axes[0], -axes[1]]), places[1] - places[0], rcond=None)[0]
@@ -131,7 +133,7 @@ def _pair(moves: Moves, joint: Joint) -> list[BevelWheel] | None:
         back = marker.body.rotation.T
         own = back @ (apex - MM * np.array(marker.body.place))
         contact = back @ across(ways[k], ways[1 - k])
-        out.append(BevelWheel(marker, own, back @ ways[k], teeth, cone, contact, back @ np.cross(*ways)))
+        out.append(BevelWheel(marker, own, back @ ways[k], teeth, cone, contact, back @ np.cross(ways[0], ways[1])))
     return out
 
 

@@ -130,8 +130,8 @@ class Moves:
         exact = [joint for joint in self.m.joints.values() if joint.kind.name == "rolling"]
         forces = [force for force in self.m.forces.values() if force.kind.name in ("tyre", "contact")]
         return [
-            Rolling(one.name, one.i, one.j, MM * one.params["ring"], MM * one.params["radius"], one in exact)
-            for one in [*exact, *(force for force in forces if force.params["heights"] is None)]
+            Rolling(pair.name, pair.i, pair.j, MM * pair.params["ring"], MM * pair.params["radius"], pair in exact)
+            for pair in [*exact, *(force for force in forces if force.params["heights"] is None)]
         ]
 
     def _rod(self) -> float:

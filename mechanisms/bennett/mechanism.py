@@ -10,7 +10,7 @@ from mbsd.spatial import Mechanism, harmonic
 
 @dataclass(frozen=True)
 class Params:
-    """A bar (m), the twist of its hinges and of those of the other bars, the middle, the swing (degrees), the speed.
+    """A bar (m), both twists, the middle and the swing (degrees), and the speed (rad/s).
 
     G. T. Bennett, A new mechanism, Engineering 76, 1903: lengths are as the sines of twists.
     """

@@ -8,7 +8,7 @@ from mbsd.spatial import Mechanism, function
 
 @dataclass(frozen=True)
 class Params:
-    """Teeth of side wheels and planet, distance of the planet (m), the mean speed and its difference (rad/s)."""
+    """Teeth, distance of the planet (m), the mean speed and how far both differ (rad/s)."""
 
     side: int = 20
     planet: int = 14
@@ -18,7 +18,7 @@ class Params:
 
 
 def build(p: Params) -> Mechanism:
-    """Shafts along x, the planet's axis along z at the start; the shafts turn apart and back, as in a bend."""
+    """Shafts along x, the planet's axis along z at the start; the car goes through bends."""
     m = Mechanism("bevel_differential")
     out, inner, thick = 2.7 * p.radius, 0.55 * p.radius, 0.1 * p.radius
     cage = m.body("cage")

@@ -1,4 +1,4 @@
-"""Bicycle: pushed at a speed at which it is stable, it weaves and rights itself without a rider's hand. SI units."""
+"""Bicycle: pushed at 5 m/s it weaves and rights itself, with no hand on the bars. SI units."""
 
 from dataclasses import dataclass
 from math import cos, pi, sin
@@ -8,7 +8,7 @@ from mbsd.spatial import Mechanism
 
 @dataclass(frozen=True)
 class Params:
-    """The benchmark: base, trail, wheels (m), tilt of the head (rad), the speed (m/s), the lean's rate (rad/s).
+    """Base, trail, wheels (m), tilt of the head (rad), speed (m/s), rate of the lean (rad/s).
 
     J. P. Meijaard, J. M. Papadopoulos, A. Ruina, A. L. Schwab, Linearized dynamics equations for the balance and steer
     of a bicycle, Proc. R. Soc. A 463, 2007. Axes here are x forward and z up.

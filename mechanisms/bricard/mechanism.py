@@ -10,7 +10,7 @@ from mbsd.spatial import Mechanism, harmonic
 
 @dataclass(frozen=True)
 class Params:
-    """A bar (m), the turn of the driven hinge in the middle and its swing (degrees), and the speed (rad/s).
+    """A bar (m), middle and swing of the driven hinge (degrees), and the speed (rad/s).
 
     R. Bricard, Lecons de cinematique II, 1927: cos a + cos b + cos a cos b = 0, for the turns of every other hinge.
     """

@@ -1,4 +1,4 @@
-"""Delta robot: three arms and three pairs of parallel rods carry a platform that never turns. SI units."""
+"""Delta robot: three arms with pairs of rods carry a platform that never turns. SI units."""
 
 from dataclasses import dataclass
 from math import acos, atan2, cos, hypot, pi, sin
@@ -10,7 +10,7 @@ Place = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Params:
-    """Radii of base and platform, arm and rods, half the width of a pair (m), height, circle (m) and speed (rad/s).
+    """Base, platform, arm, rods, half a pair, height and circle (m), and the speed (rad/s).
 
     R. Clavel, Delta, a fast robot with parallel geometry, 18th Int. Symp. on Industrial Robots, 1988.
     """

@@ -1,4 +1,4 @@
-"""Governor: two balls swing out as their spindle turns faster, and lift a sleeve, as J. Watt used it. SI units."""
+"""Governor: two balls swing out as their spindle speeds up, and lift a sleeve. SI units."""
 
 from dataclasses import dataclass
 from math import cos, pi, radians, sin
@@ -8,9 +8,9 @@ from mbsd.spatial import Mechanism, function
 
 @dataclass(frozen=True)
 class Params:
-    """Arm to the ball and to its link (m), pivot beside the spindle (m), ball, link and sleeve (kg), damper (N s/m).
+    """Arm, link, pivot beside the spindle (m), masses (kg), the damper (N s/m), speeds (rad/s).
 
-    The speed swings about its mean by ``swing``, at the rate ``slow`` (rad/s). ``lean``: of the arms at the start.
+    The speed swings about its mean at the rate ``slow``; ``lean`` is that of the arms at the start (degrees).
     """
 
     arm: float = 0.16

@@ -1,4 +1,4 @@
-"""Gyroscope: a disc that spins on a balanced beam makes it precess instead of fall, at a steady rate. SI units."""
+"""Gyroscope: a disc that spins on a beam makes it precess instead of fall. SI units."""
 
 from dataclasses import dataclass
 from math import pi
@@ -8,7 +8,7 @@ from mbsd.spatial import Mechanism
 
 @dataclass(frozen=True)
 class Params:
-    """Disc (m, kg), its place on the beam (m), the counterweight and its place (kg, m), and the spin (rad/s).
+    """Disc (m, kg) and its arm (m), counterweight (kg) and its arm (m), and the spin (rad/s).
 
     The counterweight is too light, so the disc's side would sink.
     """
@@ -27,7 +27,7 @@ DURATION = 6.0
 
 
 def precession(p: Params) -> float:
-    """Return the rate at which the level beam turns (rad/s): the torque of the weights over the disc's momentum."""
+    """Return the rate at which the level beam turns (rad/s): torque over momentum."""
     torque = 9.80665 * (p.mass * p.arm - p.weight * p.back)
     return torque / (0.5 * p.mass * p.radius**2 * p.spin)
 

@@ -1,4 +1,4 @@
-"""Schatz mixer: two shafts and three bars throw a vessel about in every direction, as in the Turbula. SI units."""
+"""Schatz mixer: two shafts and three bars throw a vessel about, as in the Turbula. SI units."""
 
 from dataclasses import dataclass
 from math import cos, pi, radians, sin, sqrt
@@ -10,7 +10,7 @@ from mbsd.spatial import Mechanism, constant_rate
 
 @dataclass(frozen=True)
 class Params:
-    """A bar, the vessel's radius and the length of the shafts (m), the vessel's mass (kg), and the speed (rad/s).
+    """Bar, vessel and shafts (m), the mass of the vessel (kg), and the speed (rad/s).
 
     P. Schatz, Mechanism producing wavering and rotating movements of receptacles, US patent 2302804, 1942.
     """

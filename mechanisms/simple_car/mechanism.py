@@ -1,4 +1,4 @@
-"""Simple car: four wheels with tyres on struts with springs; the rear ones drive, the front ones steer. SI units."""
+"""Simple car: four tyres on struts with springs; rear ones drive, front ones steer. SI units."""
 
 from dataclasses import dataclass
 from math import atan2, cos, radians, sin, tan
@@ -8,7 +8,7 @@ from mbsd.spatial import Mechanism
 
 @dataclass(frozen=True)
 class Params:
-    """Base, track, wheels (m), masses (kg), tyres and springs (N/m, N s/m), steering (degrees), torques (N m)."""
+    """Lengths (m), masses (kg), tyres and springs (N/m, N s/m), steering (degrees), torque (N m)."""
 
     base: float = 0.30
     track: float = 0.24
@@ -25,7 +25,7 @@ DURATION = 3.0
 
 
 def build(p: Params) -> Mechanism:
-    """The car starts at rest along x; wheels of the inner side stand at the larger angle, as R. Ackermann has them."""
+    """The car starts at rest along x; its inner front wheel has the larger angle (Ackermann)."""
     m = Mechanism("simple_car", gravity=(0.0, 0.0, -9.81))
     high, middle = 2.2 * p.radius, p.base / tan(radians(p.steer))
     body = m.body("body", p.body, at=(0.0, 0.0, high), inertia=(0.02, 0.03, 0.045))

@@ -10,7 +10,7 @@ from mbsd.spatial import Mechanism, harmonic
 
 @dataclass(frozen=True)
 class Params:
-    """Radii of base and platform and the height (m), half the angle of a pair (degrees), the stroke, and the speed.
+    """Base, platform, height, stroke (m), half the angle of a pair (degrees), and the speed.
 
     V. E. Gough and S. G. Whitehall, Universal tyre test machine, FISITA 1962; D. Stewart, Proc. IMechE 180, 1965.
     """
@@ -25,7 +25,7 @@ class Params:
 
 
 def build(p: Params) -> Mechanism:
-    """A cylinder of each leg hangs in a cross on ground, its rod has a ball on the platform; strokes follow a wave."""
+    """Cylinders stand in crosses, their rods have balls on the platform; strokes follow a wave."""
     m = Mechanism("stewart_platform")
     inertia = p.mass * p.platform**2 / 4
     top = m.body("platform", p.mass, at=(0.0, 0.0, p.height), inertia=(inertia, inertia, 2 * inertia))

@@ -1,4 +1,4 @@
-"""Swash plate pump: a tilted plate that turns pushes pistons to and fro in a block that stands. SI units."""
+"""Swash plate pump: a tilted plate that turns moves pistons in a block. SI units."""
 
 from dataclasses import dataclass
 from math import cos, pi, radians, sin, tan
@@ -8,7 +8,7 @@ from mbsd.spatial import Mechanism, constant_rate
 
 @dataclass(frozen=True)
 class Params:
-    """Pistons, their circle, radius and length (m), mass (kg), the tilt of the plate (degrees), the speed (rad/s)."""
+    """Pistons, their circle and sizes (m), mass (kg), the tilt (degrees), the speed (rad/s)."""
 
     pistons: int = 5
     circle: float = 0.04

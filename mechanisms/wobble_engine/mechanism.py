@@ -1,4 +1,4 @@
-"""Wobble engine: a plate that sways on a bent shaft, and does not turn, moves pistons along the shaft. SI units."""
+"""Wobble engine: a plate that sways on a bent shaft moves pistons along it. SI units."""
 
 from dataclasses import dataclass
 from math import cos, dist, pi, radians, sin
@@ -8,7 +8,7 @@ from mbsd.spatial import Mechanism, constant_rate
 
 @dataclass(frozen=True)
 class Params:
-    """Pistons, their circle, rods, radius, length (m) and mass (kg), the bend of the shaft (degrees), the speed."""
+    """Pistons, their circle, rods and sizes (m), mass (kg), the bend (degrees), the speed."""
 
     pistons: int = 4
     circle: float = 0.05

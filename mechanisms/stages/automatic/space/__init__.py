@@ -1,4 +1,4 @@
-"""Automatic parts in space: round rods between joints, ends that fit their joints, and posts on a base.
+"""Automatic parts in space: round rods between joints, ends that fit them, posts on a base.
 
 In this order, a chapter each:
 

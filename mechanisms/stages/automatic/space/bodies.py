@@ -1,4 +1,4 @@
-"""Bodies in space: their ends joined by straight rods, a disc through many, and the discs and balls that they carry."""
+"""Bodies in space: ends joined by rods, frames or plates, and discs and balls on them."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def _along_x(nodes: list[Array], length: float, radius: float, sizes: Sizes) -> 
 def _joined(
     nodes: list[Array], centre: Array, carries: bool, sizes: Sizes, bush: Array | None
 ) -> list[tuple[Array, Array]]:
-    """Return straight rods that join the ends of a body, with what it carries; many meet in its bush, if it has one."""
+    """Return straight rods that join the ends of a body; many meet in its bush, if it has one."""
     if len(nodes) == 2 and not carries:
         pairs = [(nodes[0], nodes[1])]
     elif len(nodes) <= 1 or carries:
@@ -102,7 +102,7 @@ def _joined(
 
 
 def _portal(ends: list[End], sizes: Sizes) -> list[tuple[Array, Array]]:
-    """Return the rods of a frame round a shaft: two bushes on one axis, and a beam beside it to what else it holds."""
+    """Return the rods of a frame round a shaft: two bushes and a beam beside their axis."""
     bushes = [end for end in ends if end.bush is not None]
     if len(bushes) < 2:
         return []
@@ -144,7 +144,7 @@ def _plate(nodes: list[Array], sizes: Sizes) -> cq.Shape | None:
 def _carried(
     body: Body, nodes: list[Array], rods: list[tuple[Array, Array]], sizes: Sizes, rim: Rim | None
 ) -> tuple[list[cq.Shape], list[Part]]:
-    """Return what is fused to a body's rods, and pieces on them: a disc or ball, or a ball for a mass beyond them."""
+    """Return solids and pieces on a body's rods: a disc, a ball, or a ball for a mass beyond them."""
     shape, x, zero = body.shape, np.eye(3)[0], np.zeros(3)
     if shape is not None and shape.kind == "disc":
         wheel, half = disc_solid(body, sizes, rim), disc_half(body, sizes)

@@ -1,4 +1,4 @@
-"""Ends of bodies in space: what each joint asks of its two bodies, of ground and of its own massless link.
+"""Ends of bodies in space: what joints ask of bodies, of ground and of massless links.
 
     revolute                  eyes side by side on a pin; on ground a journal in a bearing block;
                               a fork where a shaft ends; the hub of a disc on its axle

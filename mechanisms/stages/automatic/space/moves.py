@@ -1,4 +1,4 @@
-"""The motion that parts in space must have room for, in millimetres, and the size that all parts follow."""
+"""The motion that parts in space have room for (mm), and the size that they follow."""
 
 from __future__ import annotations
 

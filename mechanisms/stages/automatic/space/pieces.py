@@ -1,4 +1,4 @@
-"""Pieces in space before they are solids: ends of bodies, what stands on ground, and massless links of joints."""
+"""Pieces in space before they are solids: ends of bodies, stands on ground, links of joints."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Link:
 
 
 def gather_blocks(stands: list[Stand], sliding: set[str], sizes: Sizes) -> list[Stand]:
-    """Return stands with one block for the bores of three slides or more that stand side by side, as in a pump.
+    """Return stands with one block for three bores or more side by side, as in a pump.
 
     ``sliding`` names the joints that are slides.
     """

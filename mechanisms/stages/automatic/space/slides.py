@@ -1,4 +1,4 @@
-"""Slides in space that need two bodies' shapes at once: a cylinder with its rod, and a ball on a plate."""
+"""Slides in space that shape two bodies at once: a cylinder with its rod, a ball on a plate."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def is_telescope(around: Surroundings, joint: Joint) -> bool:
 
 
 def telescope_ends(around: Surroundings, joint: Joint) -> tuple[End, End]:
-    """Return the ends of a cylinder and of the rod that slides in it. Raises UserError for too long a stroke."""
+    """Return the ends of a cylinder and of its rod. Raises UserError for too long a stroke."""
     s, tube, rod = around.sizes, joint.i, joint.j
     axis = np.array(tube.axis)
     foot, head = around.others(tube)[0], around.others(rod)[0]

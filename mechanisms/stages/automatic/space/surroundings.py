@@ -84,7 +84,7 @@ class Surroundings:
         return not self.runs_along(self.sides(joint)[0])
 
     def side(self, joint: Joint) -> float:
-        """Return the side along the axis on which the bearing of an arm stands: away from the mechanism's middle."""
+        """Return the side of an arm's bearing along its axis: away from the mechanism's middle."""
         ground = self.sides(joint)[1]
         return 1.0 if (MM * np.array(ground.place) - self.middle) @ np.array(ground.axis) >= -1e-6 else -1.0
 
@@ -99,13 +99,13 @@ class Surroundings:
         return 0.0
 
     def shaft_radius(self, marker: Marker) -> float:
-        """Return the radius of a body about the axis of a joint (mm): its own as a round rod, else that of rods."""
+        """Return the radius of a body about the axis of a joint (mm)."""
         shape = marker.body.shape
         along = shape is not None and shape.kind == "rod" and abs(marker.axis[0]) > AXIAL
         return MM * shape.radius if along and shape is not None and shape.radius > 0.0 else self.sizes.rod
 
     def is_shaft(self, body: str, joint: Joint) -> bool:
-        """Return True if a body is a shaft in a bearing of ground whose axis meets that of a joint at right angles."""
+        """Return True if a body is a shaft on ground whose axis meets that of a joint at 90 degrees."""
         for bearing in self.moves.joints():
             if bearing.kind.name == "revolute" and {body, "ground"} == {*bearing.bodies}:
                 own = self.sides(bearing)[0]

@@ -51,7 +51,7 @@ def disc_solid(body: Body, sizes: Sizes, rim: Rim | None) -> cq.Shape:
 
 
 def rims(moves: Moves) -> dict[str, Rim]:
-    """Return the radii of ring and section of the rim of each disc that rolls (mm); a disc with a tyre stays flat."""
+    """Return the rim of each disc that rolls; one with a flat tyre has none."""
     return {
         pair.wheel.body.name: (pair.ring, pair.rim)
         for pair in moves.rolling()

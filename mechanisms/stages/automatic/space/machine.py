@@ -11,7 +11,6 @@ from mbsd.spatial.results.solution import Solution
 from mechanisms.stages.automatic.space.base import Base
 from mechanisms.stages.automatic.space.bodies import body_parts
 from mechanisms.stages.automatic.space.ends import Ends
-from mechanisms.stages.automatic.space.meeting import refuse_meeting
 from mechanisms.stages.automatic.space.moves import Array, Moves
 from mechanisms.stages.automatic.space.pieces import Line, Link, Part, gather_blocks
 from mechanisms.stages.automatic.space.round import across
@@ -48,10 +47,11 @@ def solids_in_space(solution: Solution) -> Bodies:
         moves.poses[name] = link_poses(moves, link)
         made[name] = _solids(name, link.parts, used)
         made.links[name] = (link.joint, link.body, (float(link.z[0]), float(link.z[1]), float(link.z[2])))
-    refuse_meeting(moves, lines, ends.stands, {name: link[0] for name, link in made.links.items()})
     sliding = {joint.name for joint in moves.joints() if joint.kind.name == "prismatic"}
     base = Base(moves, lines, gather_blocks(ends.stands, sliding, moves.sizes), np.array(mount.up))
     made["ground"] = _solids("ground", base.parts(), used)
+    for pair in moves.rolling():
+        made.may_touch(pair.wheel.body.name, pair.plane.body.name)
     made.along = made.space = True
     made.mount = (mount.kind, mount.up)
     return made

@@ -14,7 +14,7 @@ from shared.stage.errors import UserError
 
 HEAD = 5.4
 """Length that a joint takes at the end of a cylinder or its rod, in rods."""
-PLAY_OF_BALL = 0.02
+PLAY_OF_BALL = 0.08
 """Gap between a plate and a ball that runs on it (mm)."""
 
 

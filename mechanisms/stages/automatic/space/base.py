@@ -58,7 +58,7 @@ class Base:
         """Return where a post meets the part of a joint, and how far aside (3,) it stands."""
         s, flat = self.sizes, across(self.up)
         side = np.cross(self.up, flat)
-        through = stand.bore > 0.0 and abs(stand.axis @ self.up) > 0.7
+        through = stand.bore > 0.0 and abs(stand.axis @ self.up) > 0.2  # a post would meet the shaft
         for step in STEPS:
             for turn in range(WAYS if step else 1):
                 angle = 2.0 * math.pi * turn / WAYS

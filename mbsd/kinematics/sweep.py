@@ -10,7 +10,7 @@ import numpy as np
 
 from mbsd.arrays.chambers import check_pistons, phase_changes, whole_cycles
 from mbsd.arrays.curve_branches import CurveBranches
-from mbsd.arrays.efforts_beside import fill_beside
+from mbsd.arrays.efforts_beside import efforts_beside
 from mbsd.arrays.laws import compiled_laws, jump_times, reach_beside
 from mbsd.arrays.states import with_states
 from mbsd.base.arguments import number_array
@@ -85,6 +85,7 @@ def _solution(m: Model, ready: Prepared, grid: np.ndarray, march: March) -> Solu
 
     Efforts near change points come from poses beside.
     """
+    packed = ready.packed
     sides = [(passage, side) for passage in march.passages for side in sides_of(passage, grid)]
     if not sides:
         q, v, a, drives = march.q, march.v, march.a, march.drives
@@ -111,7 +112,8 @@ def _solution(m: Model, ready: Prepared, grid: np.ndarray, march: March) -> Solu
     for passage, side in sides:
         nodes, rows = np.searchsorted(every, side.nodes), np.searchsorted(every, side.rows)
         factor = determinant_of(passage, np.append(side.nodes, side.rows))
-        fill_beside(ready.packed, side, factor, lam, wrench, nodes, rows)
+        scales = packed.row_scale(), packed.size
+        lam[rows], wrench[rows] = efforts_beside(side, factor, lam[nodes], wrench[nodes], *scales)
         if approached is not None and len(nodes):
             approached[rows] = approached[nodes[0]]
         beside.append((side, factor))

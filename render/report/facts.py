@@ -9,7 +9,7 @@ import numpy as np
 
 from render.insights.loops import loops
 from render.insights.stops import fastest
-from render.magnitudes import effort_floor
+from render.magnitudes import effort_floor, travels
 from render.report.space import facts_in_space
 from render.report.written import Amounts, counted, degrees, moment, speed, written
 from shared.contract import AnyMotion, Motion, Motion3, Parts, read_motion, read_parts
@@ -32,7 +32,7 @@ def facts(motion: AnyMotion, parts: Parts | None, clearance: Clearance | None) -
     out.append(f"repeats after {moment(motion.period)}" if motion.period else f"{moment(span)} of motion")
     name, most = fastest(motion)
     if amount.without_noise(most, "m/s"):
-        out.append(f"{name} reaches {speed(most)}")
+        out.append(f"{name} reaches {speed(most, travels(motion, name))}")
     forces = {name: float(np.hypot(joint.fx, joint.fy).max()) for name, joint in motion.joints.items()}
     largest = max(forces.values(), default=0.0)
     for name, driver in motion.drivers.items():

@@ -378,6 +378,8 @@ class Out:
         self.compare = self.folder / "compare"
         self.glb = self.folder / f"{self.name}.glb"
         self.view = self.folder / "view.html"
+        self.article = self.folder / "article.html"
+        self.designs = self.folder / "designs.bin"
         self.report = self.folder / "report.md"
         self.poster = self.folder / "poster.png"
         self.contact = self.folder / "contact.png"

@@ -132,7 +132,9 @@ def _write_mechanism(name: str, folder: Path, freshness: Freshness) -> Entry:
         poster = picture_of(out)  # there is no moving skeleton of it
     entry.picture = _picture(poster, film, folder / "picture.jpg")
     entry.downloads = write_downloads(name, folder / "files", shown.is_of_now)
-    for file in {"loop.mp4", "film.mp4"} - {entry.loop, entry.film}:
+    if out.article.is_file() and shown.is_of_now(out.article):
+        entry.article = _once(out.article, folder / "article.html", _copied)
+    for file in {"loop.mp4", "film.mp4", "article.html"} - {entry.loop, entry.film, entry.article}:
         (folder / file).unlink(missing_ok=True)
     shown.warn()
     return entry

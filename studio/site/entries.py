@@ -164,6 +164,7 @@ class Entry:
     picture: str = ""
     loop: str = ""
     film: str = ""
+    article: str = ""
     insights: list[str] = field(default_factory=list)
     has_sliders: bool = False
     downloads: list[Download] = field(default_factory=list)

@@ -8,6 +8,7 @@
  *   app.payload, app.motion, app.clock
  *   app.select(thing), app.placeOf(thing), app.redraw(), app.hold(on): the view stays while numbers are dragged
  *
+ * options: frame, Curves and keyed are parts of the page that another page has otherwise (article/).
  * live: {drag(thing, [x, y], phase)} is called while a joint or traced point is dragged in the 2D view, in m; phase is
  * "start", "move" or "end". Without it the plane is panned.
  */
@@ -24,7 +25,7 @@ import { Transport } from "./ui/transport.js";
 import { Stage } from "./ui/stage.js";
 
 export class App {
-  constructor(root, payload, { live = null } = {}) {
+  constructor(root, payload, { live = null, frame = layout, Curves = Plots, keyed = document } = {}) {
     this.live = live;
     this.frame = this.frame.bind(this);
     this.ready = this.asked = false;
@@ -33,13 +34,13 @@ export class App {
       time: payload.clock.start, playing: !still(), speed: 1, selected: null, view: "3d", theme: "auto", apart: 0, cut: payload.solid?.section ?? 0, cutSide: payload.solid?.sawn ? "film" : "front",
       shown: initiallyShown(payload),
     });
-    this.parts = layout(root, this);
+    this.parts = frame(root, this);
     this.slot = this.parts.slot;
     this.themes = themes(this);
     this.stage = new Stage(this);
-    this.plots = new Plots(this);
+    this.plots = new Curves(this);
     this.transport = new Transport(this);
-    keys(this);
+    keys(this, keyed);
     this.store.on(["time"], ({ time }) => { this.motion.to(time); this.redraw(); });
     this.store.on(["selected", "shown", "view", "theme", "apart", "cut", "cutSide"], () => this.redraw());
     this.store.on(["playing"], () => { this.last = 0; this.redraw(); });
@@ -144,5 +145,5 @@ export class App {
 
 const still = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 
-/** @param {HTMLElement} root  @param {import("./data/decode.js").Payload} payload  @param {{live?: any}} options */
+/** @param {HTMLElement} root  @param {import("./data/decode.js").Payload} payload  @param {{live?: any, frame?: Function, Curves?: any, keyed?: EventTarget}} options */
 export function mount(root, payload, options = {}) { return new App(root, payload, options); }

@@ -10,13 +10,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from mbsd.base.errors import AssemblyError, BranchError, SingularPoseError
-from mbsd.base.quantity import written
+from mbsd.base.errors import AssemblyError
 from mbsd.kinematics.change_points import assemblies
 from mbsd.kinematics.change_points.passages import Passage
 from mbsd.kinematics.elimination import Elimination, Factors
-from mbsd.kinematics.march import REDUNDANT_GAP, RUNAWAY, driver_values
-from mbsd.kinematics.newton import BRANCH_DOUBT, DONE
+from mbsd.kinematics.march import REDUNDANT_GAP, error_of_step
+from mbsd.kinematics.newton import DONE
 from mbsd.kinematics.newton_march import NewtonMarch
 from mbsd.kinematics.steps import Steps
 from mbsd.spatial.arrays.along import tabulated
@@ -163,7 +162,14 @@ class SpaceMarch(NewtonMarch):
 
     def error_of_step(self, status: int, index: int) -> Exception:
         """Return the error for a refused step that nothing cures."""
-        return error_of_step(self.packed, status, self.motion(), index)
+        steps, v = self.steps, self.arrays["v"]
+        rates = np.linalg.norm(v[:, 3:].reshape(len(v), -1, 6)[..., 3:], axis=-1)
+        same_fields: Any = self.packed
+
+        def weak(row: int) -> str:
+            return f" at {weakest_joints(self.packed, self.arrays['q'][row])}"
+
+        return error_of_step(same_fields, status, steps.times, index, steps.drives, rates, weak, "joint")
 
     def complete(self, rows: np.ndarray) -> None:
         """Fill velocities, accelerations and turns at ``rows`` (R,), whose coordinates are those of a passage."""
@@ -225,38 +231,6 @@ def refuse_disagreeing(packed: Packed, motion: newton.DrivenMotion) -> None:
         f"{packed.name}: at t = {motion.times[k]:.6g} s redundant joint '{packed.joints[joint].name}' is open by "
         f"{gap_in_words(packed, joint, phi)} while the others close: places or axes do not agree. Give axes with all "
         "their digits, or use a spherical or cylindrical joint instead."
-    )
-
-
-def error_of_step(packed: Packed, status: int, motion: newton.DrivenMotion, index: int) -> Exception:
-    """Return the error for a step that dividing does not cure."""
-    last = max(index - 1, 0)
-    same_fields: Any = packed
-    where = f"t = {motion.times[last]:.6g} s ({driver_values(same_fields, motion.drives[last])})"
-    if index == 0:
-        return SingularPoseError(
-            f"{packed.name}: the start pose at {where} is singular: the drivers do not fix the motion here. Start a "
-            "little before or after it with start_near, or drive another joint."
-        )
-    rates = np.linalg.norm(motion.v[: last + 1, 3:].reshape(last + 1, -1, 6)[..., 3:], axis=-1)
-    fastest = [packed.body_names[1 + b] for b in np.argsort(-rates[last])[:2]]
-    usual = float(np.median(rates.max(axis=1)))
-    weak = weakest_joints(packed, motion.q[last])
-    if rates[last].max() > RUNAWAY * usual:
-        return SingularPoseError(
-            f"{packed.name}: the bodies cannot follow the drivers beyond {where}: a toggle at {weak}, where "
-            f"{', '.join(fastest)} run away ({written(float(rates[last].max()), 'rad/s')}, {written(usual, 'rad/s')} "
-            "before). Drive within reach, change the lengths, or drive another joint."
-        )
-    if status == BRANCH_DOUBT:
-        return BranchError(
-            f"{packed.name}: after {where} the motion would jump to another assembly at {weak}, and steps down to "
-            f"{motion.times[index] - motion.times[last]:.1e} s do not cure it. A law jumps there, or two assemblies "
-            "meet; end the motion before it."
-        )
-    return SingularPoseError(
-        f"{packed.name}: the pose at {where} is singular at {weak}: the drivers do not decide how the bodies go on. "
-        "End the motion before it, or add a joint that decides."
     )
 
 

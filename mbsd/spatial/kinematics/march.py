@@ -205,13 +205,15 @@ class SpaceMarch(NewtonMarch):
 
     def _complete(self, arrays: dict[str, np.ndarray], times: np.ndarray, drives: np.ndarray, rows: np.ndarray) -> None:
         """Fill velocities, accelerations and turns at rising ``rows`` (R,) from coordinates."""
-        poses = [arrays[name][rows, 3:].reshape(len(rows), -1, 7) for name in self.poses]
+        poses = [arrays[name][rows, 3:].reshape(len(rows), len(self.packed.bodies) - 1, 7) for name in self.poses]
         poses[0][..., 3:] /= np.linalg.norm(poses[0][..., 3:], axis=-1, keepdims=True)
-        arrays["q"][rows, 3:] = poses[0].reshape(len(rows), -1)
+        arrays["q"][rows, 3:] = poses[0].reshape(len(rows), len(self.packed.design) - 3)
         inverse = poses[0][..., 3:] * CONJUGATE
         for name, part in zip(("v", "a"), poses[1:], strict=True):
             turning = 2.0 * product(part[..., 3:], inverse)[..., 1:]
-            arrays[name][rows, 3:] = np.concatenate([part[..., :3], turning], axis=-1).reshape(len(rows), -1)
+            arrays[name][rows, 3:] = np.concatenate([part[..., :3], turning], axis=-1).reshape(
+                len(rows), self.packed.freedoms
+            )
         ws, q, v, turn, rate = self.packed.ws, *(arrays[name] for name in ("q", "v", "turn", "turn_rate"))
         for k in rows if turn.shape[1] else ():
             guess = turn[k - 1] + (times[k] - times[k - 1]) * rate[k - 1] if k else turn[0]

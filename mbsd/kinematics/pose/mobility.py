@@ -170,24 +170,25 @@ def clear_rows(packed: Packed, q: np.ndarray, kept: list[int]) -> list[int]:
 def best_rows(packed: Packed, known: np.ndarray) -> np.ndarray | None:
     """Return (n,) least dependent rows of the last J; None if ``known`` (n,) are nearly as good.
 
-    Where joints repeat each other, rows that serve at one pose may be dependent at another.
+    Where joints repeat each other, rows that serve at one pose may be dependent at another. Near a change point one
+    singular value vanishes whatever rows are kept, and a second one for some of them: there they pass two at once.
     """
-    return better_rows(packed.jacobian() * packed.row_scale()[:, None] * packed.column_scale(), known)
+    return better_rows(packed.jacobian() * packed.row_scale()[:, None] * packed.column_scale(), known, least=2)
 
 
-def better_rows(jac: np.ndarray, known: Sequence[int] | np.ndarray, better: float = BETTER) -> np.ndarray | None:
-    """Return (r,) rows of jac (m, n), its least singular value ``better`` times that of ``known`` (r,).
+def better_rows(
+    jac: np.ndarray, known: Sequence[int] | np.ndarray, better: float = BETTER, least: int = 1
+) -> np.ndarray | None:
+    """Return (r,) rows of jac (m, n) that are further from dependent than ``known`` (r,); None if there are none.
 
-    jac is dimensionless.
-
-    None if there are none. Source: pivoted QR.
+    One of their ``least`` smallest singular values is ``better`` times that of ``known``. jac is dimensionless. Source:
+    pivoted QR.
     """
     from scipy.linalg import qr, svdvals
 
     chosen = np.sort(qr(jac.T, mode="r", pivoting=True)[-1][: len(known)])
-    if svdvals(jac[chosen])[-1] <= better * svdvals(jac[known])[-1]:
-        return None
-    return chosen
+    own, others = (np.asarray(svdvals(jac[rows]))[-least:] for rows in (known, chosen))
+    return chosen if (others > better * own).any() else None
 
 
 def _best_rows(packed: Packed, q: np.ndarray) -> tuple[list[int], list[int], np.ndarray]:

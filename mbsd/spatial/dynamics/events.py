@@ -195,7 +195,7 @@ def no_contacts(state: State, events: SpaceEvents) -> arrays.Contacts:
         pose=np.zeros((2, n)), rates=np.zeros((2, n)), lam=np.zeros(rows), force=np.zeros(n),
         parts=arrays.PARTS.copy(), samples=np.zeros((0, len(arrays.PARTS))), answer=np.zeros((0, n)),
         compliance=square, factor=square, tableau=np.zeros((0, 2)), vector=np.zeros((arrays.SHIFT + 1, 0)),
-        intervals=np.zeros((arrays.MOST_LOOKS + 2, 6)), chosen=np.zeros((arrays.RESTING + 1, 0), np.int64),
+        intervals=np.zeros((arrays.MOST_LOOKS + 2, 6)), chosen=np.zeros((arrays.STRUCK + 1, 0), np.int64),
         schur=table, special=whole, basis=np.zeros((2, 0), np.int64),
         sticks=arrays.Sticks(
             np.zeros(0, np.int64), np.zeros((arrays.GIVES + 1, 0)), np.zeros((arrays.BASIS + 1, 0)), square,
@@ -214,4 +214,5 @@ def no_contacts(state: State, events: SpaceEvents) -> arrays.Contacts:
         ),
         log=np.zeros((0, 2)),
         outside=arrays.Outside(np.zeros(1, np.int64), np.zeros(2), np.zeros(1)),
+        outlines=np.zeros((0, 4), np.int64), pairs=none, swept_place=np.zeros((0, 4), np.int64), swept=np.zeros((0, 7)),
     )  # fmt: skip

@@ -54,14 +54,16 @@ def motion_of(
 class SpaceSolver(assemblies.Solver):
     """Newton-Raphson along ways of the drivers past a change point."""
 
-    def __init__(self, march: SpaceMarch, sequence: Elimination, factors: Factors) -> None:
-        super().__init__(march.ready.packed, sequence, factors)
-        self._march = march
-        self._turns = march.ready.turns
+    def __init__(self, ready: Prepared, arrays: dict[str, np.ndarray], sequence: Elimination, factors: Factors) -> None:
+        """``arrays``: those of the march, whose turns are counted on."""
+        same_fields: Any = ready.packed
+        super().__init__(same_fields, sequence, factors)
+        self._ready, self._arrays = ready, arrays
+        self._turns = ready.turns
 
     def start_from(self, row: int) -> None:
         """Count turns from those of a step."""
-        self._turns = self._march.arrays["turn"][row].copy()
+        self._turns = self._arrays["turn"][row].copy()
 
     def exchanged(self, q: np.ndarray, drive: np.ndarray) -> SpaceSolver | None:
         """Return a solver with rows that are further from dependent at a pose q (3 + 7 n,); None if there are none."""
@@ -69,7 +71,7 @@ class SpaceSolver(assemblies.Solver):
         packed: Any = self.packed
         packed.ws.guess[:] = self._turns
         kept = better_rows_at(packed, q, self.sequence.rows.astype(np.int64))
-        return None if kept is None else SpaceSolver(self._march, *planned(packed, kept))
+        return None if kept is None else SpaceSolver(self._ready, self._arrays, *planned(packed, kept))
 
     def walk(self, way: assemblies.Way, pose: np.ndarray, p: np.ndarray) -> tuple[np.ndarray, ...] | None:
         """Return q, dq/dp, d2q/dp2 (P, 3 + 7 n) and determinants (P, d); see the plane."""
@@ -82,7 +84,7 @@ class SpaceSolver(assemblies.Solver):
         unguarded = len(p) - 1
         status, _ = newton.sweep(
             packed.system,
-            self._march.ready.laws,
+            self._ready.laws,
             self.sequence,
             self.factors,
             packed.ws,
@@ -132,7 +134,7 @@ class SpaceMarch(NewtonMarch):
 
     def solver(self) -> SpaceSolver:
         """Return Newton-Raphson with the rows in use, for passages."""
-        return SpaceSolver(self, self.sequence, self.factors)
+        return SpaceSolver(self.ready, self.arrays, self.sequence, self.factors)
 
     def motion(self) -> newton.DrivenMotion:
         """Return the motion as kernels read it."""

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from mbsd.model.event import Event, Happening, angle_reaches, distance_reaches, speed_reaches
     from mbsd.model.laws import Motion, constant_rate, cycloidal, function, harmonic, polynomial, recorded, table
     from mbsd.model.laws.curve import Curve, curve
+    from mbsd.model.outlines.outline import Outline, arc_through, circle, spline_through
     from mbsd.pictures import Animation, Picture, Svg
     from mbsd.results.fluids import GasView, HydraulicView
     from mbsd.results.force_view import ForceView
@@ -105,6 +106,7 @@ __all__ = [
     "Motion",
     "Normal",
     "Optimum",
+    "Outline",
     "PathFit",
     "Picture",
     "Sensitivities",
@@ -119,7 +121,9 @@ __all__ = [
     "Triangular",
     "Uniform",
     "angle_reaches",
+    "arc_through",
     "balance",
+    "circle",
     "constant_rate",
     "curve",
     "cycloidal",
@@ -135,6 +139,7 @@ __all__ = [
     "recorded",
     "simulated",
     "speed_reaches",
+    "spline_through",
     "study",
     "table",
     "tolerances",
@@ -159,6 +164,7 @@ _ROOMS = {
     "mbsd.model.event": "Event Happening angle_reaches distance_reaches speed_reaches",
     "mbsd.model.laws": "Motion constant_rate cycloidal function harmonic polynomial recorded table",
     "mbsd.model.laws.curve": "Curve curve",
+    "mbsd.model.outlines.outline": "Outline arc_through circle spline_through",
     "mbsd.pictures": "Animation Picture Svg",
     "mbsd.results.fluids": "GasView HydraulicView",
     "mbsd.results.force_view": "ForceView",

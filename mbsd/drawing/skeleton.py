@@ -29,6 +29,7 @@ from mbsd.model.body import Marker
 from mbsd.model.cables import seen_span
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model, hidden_bodies
+from mbsd.model.outlines.outline import Outline
 from mbsd.pictures import Picture
 
 if TYPE_CHECKING:
@@ -97,7 +98,8 @@ def measure(m: Model, pose: Pose) -> tuple[np.ndarray, np.ndarray, float]:
     wide = [reach(joint, pose) for joint in m.joints.values() if not pose.gone(joint.name)]
     loads = [force_reach(force, pose, list(m.joints.values())) for force in m.forces.values()]
     loads += [contact_reach(joint, pose) for joint in m.contacts.values()]
-    everything = np.concatenate([*points.values(), *pose.paths.values(), *wide, *loads])
+    outlines = [_outline_path(pose, outline) for outline in m.outlines.values()]
+    everything = np.concatenate([*points.values(), *pose.paths.values(), *wide, *loads, *outlines])
     if not len(everything):
         everything = np.zeros((1, 2))
     low, high = everything.min(axis=0), everything.max(axis=0)
@@ -131,6 +133,14 @@ def draw_on(
     for name in colours:
         with canvas.on(on_body(name)):
             _link(canvas, m, pose, name, points[name], colours[name], frames)
+    for outline in m.outlines.values():
+        name = outline.body.name
+        with canvas.on(on_body(name)):
+            path, ink = _outline_path(pose, outline), colours.get(name, QUIET)
+            if outline.hole:
+                canvas.line(path, ink, 1.5, order=2)
+            else:
+                canvas.shape(path, edge=ink, fill=ink, width=1.5, order=2, alpha=0.16)
     if frames:
         with canvas.on(GROUND):
             _frame(canvas, pose, "ground", 2.6)
@@ -153,6 +163,13 @@ def draw_on(
         with canvas.on(on_body(name) if ring is None else at_place(ring.i)):
             place, clearance = (_middle(points[name]), 1.1) if ring is None else (rim_of(ring, pose, unit), 0.4)
             canvas.label(name, place, clearance, colours[name], 9.5)
+
+
+def _outline_path(pose: Pose, outline: Outline) -> np.ndarray:
+    """Return (k, 2) points of an outline in the world (m)."""
+    origin = pose.point(outline.body.name, 0.0, 0.0)
+    axes = np.array([pose.point(outline.body.name, *tip) - origin for tip in ((1.0, 0.0), (0.0, 1.0))])
+    return origin + outline.path() @ axes
 
 
 def steady_sides(m: Model, poses: Sequence[Pose], unit: float) -> dict[str, np.ndarray]:

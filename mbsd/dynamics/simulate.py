@@ -372,8 +372,8 @@ def solution(
         at = slice(start, min(start + chunk, count))
         phi, bend, rate = np.zeros((3, at.stop - start, rows))
         compact = np.zeros((at.stop - start, rows, 6))
-        tabulate_along(packed, drives[at], q[at], v[at], phi, compact, bend)  # gamma; J a - gamma below
         held = recording.held[at]
+        tabulate_along(packed, drives[at], q[at], v[at], phi, compact, bend, held)  # gamma; J a - gamma below
         if recording.independent:
             motion = out.t[at], q[at], v[at]
             out.lam[at], out.margin[at] = multipliers_along(

@@ -51,6 +51,9 @@ from mbsd.model.joints.pairs import angle_lock, distance, pin_in_slot, prismatic
 from mbsd.model.joints.ratios import ratio, travel_ratio, turn_ratio
 from mbsd.model.laws.function import checked_pulses
 from mbsd.model.mechanism import Model, StartVelocity, name_of, new_name, number_given, own_body, start_given
+from mbsd.model.outlines.contact import outline_contact, outline_touch
+from mbsd.model.outlines.outline import outline
+from mbsd.model.outlines.penalty import outline_force, yielding_outline_contact
 
 
 class Building(Model):
@@ -114,6 +117,8 @@ class Building(Model):
     gear_mesh = gear_mesh
     shaft = shaft
     tyre = tyre
+    outline_force = outline_force
+    yielding_outline_contact = yielding_outline_contact
     drag = drag
     rotating_frame = rotating_frame
     friction = friction
@@ -130,8 +135,12 @@ class Building(Model):
     coordinate_stop = coordinate_stop
     stop = stop
     one_way = one_way
+    outline_touch = outline_touch
+    outline_contact = outline_contact
 
-    # -- points, starts, events -------------------------------------------------------------------------------------
+    # -- outlines, points, starts, events -----------------------------------------------------------------------------
+
+    outline = outline
 
     def trace(self, name: str, marker: Marker) -> Marker:
         """Follow a point: its path, velocity and acceleration are in the solution."""

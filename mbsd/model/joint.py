@@ -63,6 +63,8 @@ SPECIALS: dict[str, Special] = {
     "curve": Special("curve", "m"),
     "curve_rolling": Special("curve_rolling", "m", phased=True),
     "support": Special("support", "m"),
+    "outline": Special("outline", "m"),
+    "outline_sliding": Special("outline_sliding", "m"),
     "geneva": Special("geneva", "rad"),
     "user": Special("user", "m"),
     "linear": Special("linear", "m"),
@@ -122,7 +124,7 @@ class JointKind(ByName):
         sized = with_radii(params)
         values = [sized[key] for key in self.lengths]
         return [
-            value if isinstance(value, float) else max(max(x) - min(x) for x in zip(*value, strict=True))
+            value if isinstance(value, float) else max(max(x) - min(x) for x in list(zip(*value, strict=True))[:2])
             for value in values
         ]
 

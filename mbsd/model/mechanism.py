@@ -50,6 +50,8 @@ class Model(Suggesting):
     forces: dict[str, Force] = field(default_factory=partial(Named, "force"))
     contacts: dict[str, Joint] = field(default_factory=partial(Named, "contact"))
     events: dict[str, Event] = field(default_factory=partial(Named, "event"))
+    outlines: dict[str, Any] = field(default_factory=partial(Named, "outline"))
+    """Outlines of bodies by name; see mbsd/model/outlines.py."""
     traces: dict[str, Marker] = field(default_factory=partial(Named, "traced point"))
     starts: dict[str, Start] = field(default_factory=dict)
     velocities: dict[str, StartVelocity] = field(default_factory=dict)

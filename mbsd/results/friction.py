@@ -47,7 +47,7 @@ def friction_view(
     flat_q, flat_v = (np.ascontiguousarray(part.reshape(count, -1)) for part in (q, v))
     phi, gamma, compact = np.zeros((count, rows)), np.zeros((count, rows)), np.zeros((count, rows, 6))
     drives = np.zeros((count, len(packed.motions) + 1, 3))
-    tabulate_along(packed, drives, flat_q, flat_v, phi, compact, gamma)
+    tabulate_along(packed, drives, flat_q, flat_v, phi, compact, gamma, held)
     loads = pack_loads(packed)
     normal = normals_along(packed, loads, flat_q, compact, lam)
     [k] = directory(packed)[name].friction

@@ -3,7 +3,8 @@
     {"schema": "mbsd.model", "schema_version": 1, "name": ..., "gravity": [gx, gy],
      "bodies": {"crank": {"mass", "com", "inertia", "length", "z", "products", "looks"}},
      "joints": {"A": {"kind", "i": {"body", "x", "y", "angle", "z"}, "j": ..., "params"}},
-     "contacts": the same, "drivers": the same with "law", "forces": the same with "laws", "traces": {"P": marker},
+     "contacts": the same, "drivers": the same with "law", "forces": the same with "laws",
+     "outlines": {"pawl": {"body", "corners", "hole"}}, "traces": {"P": marker},
      "starts": {"crank": {"angle", "place"}}, "velocities": {"crank": {"omega", "place"}}}
 
 Kinds and laws are those of the registries: a joint or force is rebuilt by its kind's ``add``, from its
@@ -26,6 +27,7 @@ from mbsd.model.change import given_body, law_name, with_markers
 from mbsd.model.force import FORCE_KINDS, Force, ForceKind
 from mbsd.model.joint import CONTACT_KINDS, KINDS, Joint, JointKind
 from mbsd.model.mechanism import Model, Start, StartVelocity
+from mbsd.model.outlines.outline import Outline, outline
 from mbsd.saving.laws import called, law_from, plain
 
 T = TypeVar("T")
@@ -135,6 +137,8 @@ def build(written: Mapping[str, Any], make: type[M], where: str = "model") -> M:
         _read_force(m, name, entry)
     for name, entry in top.entries("contacts"):
         _read_contact(m, name, entry)
+    for name, entry in top.entries("outlines") if top.get("outlines") else ():
+        _read_outline(m, name, entry)
     for name, entry in top.entries("traces"):
         entry.within(lambda name=name, entry=entry: m.trace(name, _read_marker(m, entry)))
     for name, entry in top.entries("starts"):
@@ -157,10 +161,13 @@ def _write(m: Model) -> dict[str, Any]:
         "drivers": {name: _joint(m, driver) for name, driver in m.drivers.items()},
         "forces": {name: _force(m, force) for name, force in m.forces.items()},
         "contacts": {name: _joint(m, contact, "contact") for name, contact in m.contacts.items()},
+        "outlines": {name: _outline(outline) for name, outline in m.outlines.items()},
         "traces": {name: plain(marker, name) for name, marker in m.traces.items()},
         "starts": {name: _state(start) for name, start in m.starts.items()},
         "velocities": {name: _state(velocity) for name, velocity in m.velocities.items()},
     }
+    if not m.outlines:
+        del parts["outlines"]
     missing = [field.name for field in fields(m) if field.name not in parts and getattr(m, field.name)]
     if missing:
         raise ModelError(f"{m.name}: {', '.join(missing)} of the model cannot be saved; build it in Python instead")
@@ -194,6 +201,11 @@ def _force(m: Model, force: Force) -> dict[str, Any]:
     out = {"kind": force.kind.name, "i": plain(force.i, what), "j": plain(force.j, what)}
     out["params"] = {key: plain(value, f"{what}: {key}") for key, value in force.given.items()}
     return out | {"laws": {key: plain(law, f"{what}: {key}") for key, law in force.laws.items()}}
+
+
+def _outline(outline: Outline) -> dict[str, Any]:
+    corners = [list(corner) for corner in outline.corners]
+    return {"body": outline.body.name, "corners": corners, "hole": outline.hole}
 
 
 def _state(state: Any) -> dict[str, Any]:
@@ -266,6 +278,12 @@ def _read_contact(m: Model, name: str, entry: Entry) -> None:
     kind = _kind(entry, "contact", CONTACT_KINDS)
     entry.check_fields("kind", "i", "j", "params")
     _add(m, _adds(kind), name, entry, _params(m, entry))
+
+
+def _read_outline(m: Model, name: str, entry: Entry) -> None:
+    entry.check_fields("body", "corners", "hole")
+    body = entry.within(lambda: m.known_body(entry.text("body")))
+    entry.within(lambda: outline(m, body, entry.get("corners"), name, hole=entry.get("hole") is True))
 
 
 def _adds(kind: JointKind | ForceKind) -> Callable[..., Any]:

@@ -25,8 +25,8 @@ ARGUMENTS = {"restitution": RESTITUTION}
 """Columns of Contacts.number by the arguments of contacts."""
 VALUE, RATE, NORMAL, GIVEN, FREE, ALONE, PUSH, SHIFT = range(8)
 """Rows of Contacts.vector."""
-SKIPPED, TOUCHING, STAYING, TAKING, KEPT, RESTING = range(6)
-"""Rows of Contacts.chosen."""
+SKIPPED, TOUCHING, STAYING, TAKING, KEPT, RESTING, STRUCK = range(7)
+"""Rows of Contacts.chosen; STRUCK: how often a gap was struck in an impact without rebound."""
 (
     BEGUN, WHEN, AT_ONCE, MET, LOAD, START, LENGTH, WHERE, BEYOND, FAILURE, SHARING, PENDING, ACTED, PAUSES, LOGGED,
     ENERGY, WHICH, METHOD, TRYING, DIVIDES,
@@ -205,7 +205,7 @@ class Contacts(NamedTuple):
     intervals: Any
     """(MOST_LOOKS + 2, 6) that are still to be looked at for a dip."""
     chosen: Any
-    """(6, c) int, flags of rows."""
+    """(7, c) int, flags of rows."""
     schur: Any
     """mbsd.dynamics.reference.schur.Schur without the rows of contacts, while all are open."""
     special: Any
@@ -225,3 +225,11 @@ class Contacts(NamedTuple):
     log: Any
     """(n, 2) gap and impulse (N s, N m s) of each impact of the last event, in order; no rows where none is kept."""
     outside: Outside
+    outlines: Any
+    """(o, 4) int, rows of outlines; see outlines.py."""
+    pairs: Any
+    """(o,) scratch: codes of their pairs."""
+    swept_place: Any
+    """(p, 4) int, pairs of outlines; see following.py."""
+    swept: Any
+    """(p, 7)"""

@@ -1,7 +1,8 @@
-"""Steps while wheels may run into each other, and points follow curves that cross themselves.
+"""Steps while wheels or outlines may run into each other, and points follow curves that cross themselves.
 
 A step takes two centres at most half their way to each other, and a foot no farther than its curve allows; where wheels
-meet, the run ends and driver.py names them.
+meet, the run ends and driver.py names them. A step moves outlines on each other by no more than their gap and a part of
+their size, so that neither goes through the other unseen, however thin or fast it is.
 """
 
 from __future__ import annotations
@@ -10,7 +11,8 @@ import math
 
 from mbsd.compiling.callback import call
 from mbsd.compiling.jit import internal, lazy
-from mbsd.dynamics.events.arrays import HALF, LAST_STEP, METHOD, SHORTEST, TRYING
+from mbsd.dynamics.events.arrays import HALF, LAST_STEP, METHOD, ROW, SHORTEST, TRYING
+from mbsd.dynamics.formulation import measure_gaps
 from mbsd.dynamics.integrators.advance import advance_past_jumps, copy_state
 from mbsd.dynamics.state import ACCEPTED, PAUSED, REACHED, STEP_TOO_SMALL, TIME
 from mbsd.equations.relative.curve_pieces import CLOSED, FARTHEST, SPAN, U, X, Y, find_foot
@@ -100,6 +102,55 @@ def _find_feet(system, ws, curves, q):
 
 
 @internal
+def _circle_at(y, b, x, z):
+    """Return the place of a point (x, z) of body b's axes in the world at y (2, 3 nb)."""
+    c = math.cos(y[0, b + 2])
+    s = math.sin(y[0, b + 2])
+    return y[0, b] + c * x - s * z, y[0, b + 1] + s * x + c * z
+
+
+@internal
+def _travel(y, i, j, swept, apart):
+    """Return the speed (m/s) at y (2, 3 nb) with which places of the outline of body j move on body i at most."""
+    ax = y[0, j] - y[0, i]
+    ay = y[0, j + 1] - y[0, i + 1]
+    vx = y[1, j] - y[1, i] + y[1, i + 2] * ay
+    vy = y[1, j + 1] - y[1, i + 1] - y[1, i + 2] * ax
+    around = math.sqrt(swept[3] * swept[3] + swept[4] * swept[4]) + swept[5]
+    if not around < math.inf:
+        around = apart + math.sqrt(swept[0] * swept[0] + swept[1] * swept[1]) + swept[2]
+    return math.sqrt(vx * vx + vy * vy) + abs(y[1, j + 2] - y[1, i + 2]) * around
+
+
+@internal
+def _sweep(dyn, scratch, contacts, before, after, h):
+    """Return how deep a step of h (s) between two y may take outlines into each other, over what is allowed.
+
+    Circles around outlines that stay apart say enough; else the gaps do at the begin of the step.
+    """
+    most = 0.0
+    measured = False
+    for p in range(contacts.swept_place.shape[0]):
+        i = 3 * contacts.swept_place[p, 0]
+        j = 3 * contacts.swept_place[p, 1]
+        swept = contacts.swept[p]
+        ix, iy = _circle_at(before, i, swept[0], swept[1])
+        jx, jy = _circle_at(before, j, swept[3], swept[4])
+        apart = math.sqrt((jx - ix) ** 2 + (jy - iy) ** 2)
+        way = h * max(_travel(before, i, j, swept, apart), _travel(after, i, j, swept, apart))
+        if way <= max(apart - swept[2] - swept[5], 0.0) + swept[6]:
+            continue
+        if not measured:
+            measure_gaps(dyn, scratch, 0.0, before[0])
+            measured = True
+        least = math.inf
+        for o in range(contacts.swept_place[p, 2], contacts.swept_place[p, 3]):
+            least = min(least, scratch.ws.phi[contacts.place[contacts.outlines[o, 0], ROW]])
+        most = max(most, way / (max(least, 0.0) + swept[6]))
+    return most
+
+
+@internal
 def _advance(dyn, scratch, state, contacts, stepping, end, steps):
     """Call ``advance_past_jumps`` with the integrator of the run."""
     method = int(contacts.clock[METHOD])
@@ -123,6 +174,8 @@ def _step_by_step(dyn, scratch, state, contacts, stepping, end, steps):
             taken = state.clock[TIME] - kept.clock[TIME]
             farthest = _approach(dyn.system, wheels, kept.y, state.y, taken)
             farthest = max(farthest, _find_feet(dyn.system, scratch.ws, curves, state.y[0]))
+            if contacts.swept_place.shape[0] > 0:
+                farthest = max(farthest, _sweep(dyn, scratch, contacts, kept.y, state.y, taken))
             if farthest <= 1.0 or taken <= wheels.bounds[SHORTEST] * stepping.settings.longest:
                 break
             copy_state(state, kept)
@@ -154,6 +207,7 @@ def advance_to(dyn, scratch, state, contacts, stepping, end, steps):
     """Advance to ``end`` (s), a step at a time where wheels may meet or points follow curves; returns a status."""
     if contacts.clock[METHOD] < 0.0:
         return _advance_outside(contacts, end, steps)
-    if contacts.wheels.markers.shape[0] > 0 or contacts.curves.place.shape[0] > 0:
+    watched = contacts.wheels.markers.shape[0] + contacts.curves.place.shape[0] + contacts.swept_place.shape[0]
+    if watched > 0:
         return _step_by_step(dyn, scratch, state, contacts, stepping, end, steps)
     return _advance(dyn, scratch, state, contacts, stepping, end, steps)

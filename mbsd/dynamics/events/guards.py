@@ -1,6 +1,6 @@
 """Guards: scalars whose zeros within a step are events, on the step's quintic and along the motion itself.
 
-    open contact    its gap (of a clutch its rate)      closed contact    its normal force N
+    open contact    its gap (of a clutch its rate)      closed contact    its normal force N, or room (outlines.py)
     it slides       its speed, sign kept                it sticks         mu_s N - |T|
     user's event    its value, sign kept
 
@@ -20,6 +20,7 @@ import math
 from mbsd.compiling.jit import apart, internal, merged
 from mbsd.dynamics.events import arrays
 from mbsd.dynamics.events.following import advance_to
+from mbsd.dynamics.events.outlines import end_at_corners
 from mbsd.dynamics.events.rows import any_held, gaps_of, read_gaps
 from mbsd.dynamics.events.sticking.together import read_ways
 from mbsd.dynamics.events.users import signed
@@ -79,6 +80,7 @@ def _values(dyn, scratch, contacts, y, forces):
             contacts.vector[arrays.VALUE, k] = along(dyn, scratch, row, y[1])
         else:
             contacts.vector[arrays.VALUE, k] = scratch.ws.phi[row]
+    end_at_corners(scratch, contacts)
     for w in range(friction.gap.shape[0]):
         row = contacts.place[count + w, arrays.ROW]
         if contacts.number[count + w, arrays.CLOSED] > 0.0:

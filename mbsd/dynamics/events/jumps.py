@@ -7,6 +7,8 @@ By Poisson's law with Coulomb friction in both phases of an impact:
 
 For one contact without friction this is Newton's law, g'+ = -e g'-. Impacts pass on in rounds: a round takes the
 contacts that approach, all at once; those that approach by its impulses are the next round, as in Newton's cradle.
+Where there are outlines, contacts struck again and again without rebound, as of a pawl in a corner, push in all
+further rounds.
 Friction of joints is left out of impacts. Then contacts that do not separate push so that gaps do not close, and slide
 or stick as joints may (sticking/deciding.py). A rebound too slow to count ends here: its rate must not go on into
 accelerations, which would turn bodies that two contacts hold.
@@ -21,6 +23,7 @@ from __future__ import annotations
 from mbsd.compiling.jit import apart, internal, kernel
 from mbsd.dynamics.events import arrays, rows
 from mbsd.dynamics.events.friction import note_met, one_by_one, slide_or_stick, solve_with_friction
+from mbsd.dynamics.events.outlines import keep_pairs
 from mbsd.dynamics.events.sticking.deciding import decide
 from mbsd.dynamics.events.sticking.sharing import stand
 from mbsd.dynamics.formulation import derivative
@@ -29,6 +32,8 @@ from mbsd.equations.joint_friction import SENSE
 
 ROUNDS = 200
 """Rounds of an impact; after so many, all closed contacts are solved at once without rebound."""
+AGAIN = 3
+"""Times that a contact is struck without rebound in an impact, after which it pushes with the others, of outlines."""
 CREEP = 1e-6
 """Part of the rates that count as zero, beyond which a contact that carries nothing still closes."""
 
@@ -89,8 +94,12 @@ def _strike(dyn, scratch, contacts, v):
     taking = contacts.chosen[arrays.TAKING]
     vector = contacts.vector
     normal = vector[arrays.NORMAL]
-    for k in range(gaps, count):
-        vector[arrays.GIVEN, k] = 0.0
+    struck = contacts.chosen[arrays.STRUCK]
+    most = AGAIN if contacts.outlines.shape[0] > 0 else ROUNDS
+    for k in range(count):
+        struck[k] = 0
+        if k >= gaps:
+            vector[arrays.GIVEN, k] = 0.0
     for turn in range(ROUNDS + 1):
         rows.find_rates(dyn, scratch, contacts, v)
         approaching = False
@@ -111,6 +120,11 @@ def _strike(dyn, scratch, contacts, v):
             none = last or rebound < contacts.number[k, arrays.SETTLE]
             vector[arrays.GIVEN, k] = 0.0 if none else contacts.number[k, arrays.RESTITUTION]
             bounces = bounces or (taking[k] != 0 and vector[arrays.GIVEN, k] != 0.0)
+        for k in range(gaps):
+            if struck[k] >= most and not bounces:
+                taking[k] = 1
+            elif taking[k] != 0 and vector[arrays.GIVEN, k] == 0.0:
+                struck[k] += 1
         take_ways(contacts, taking)
         for w in range(friction.gap.shape[0]):
             friction.number[w, arrays.BESIDE] = 0.0
@@ -269,6 +283,7 @@ def resolve(dyn, scratch, contacts, state, met):
     if not _settle(dyn, scratch, contacts, state, staying, halted, slipping, touched):
         return False
     _hold_decided(dyn, scratch, contacts)
+    keep_pairs(dyn, scratch, contacts, state.clock[TIME], state.y[0])
     return True
 
 

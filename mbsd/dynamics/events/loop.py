@@ -19,6 +19,7 @@ from mbsd.dynamics.events import arrays, users
 from mbsd.dynamics.events.following import advance_to
 from mbsd.dynamics.events.guards import fit
 from mbsd.dynamics.events.jumps import resolve
+from mbsd.dynamics.events.outlines import forget_pairs
 from mbsd.dynamics.events.rows import any_held, hold_rows
 from mbsd.dynamics.events.search import event_time, first_met
 from mbsd.dynamics.events.sticking.together import share_here, share_outputs
@@ -84,6 +85,7 @@ def _find_reached(dyn, contacts, state):
 def _begin(dyn, scratch, contacts, state):
     """Close contacts at the start and resolve velocities that they forbid; False if that is impossible."""
     contacts.clock[arrays.BEGUN] = arrays.BEGUN_NOW
+    forget_pairs(scratch, contacts)
     measure(dyn, scratch, state.clock[TIME], state.y[0])
     for k in range(contacts.place.shape[0]):
         contacts.number[k, arrays.CLOSED] = 0.0

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.arrays.curve_branches import CURVES
+from mbsd.arrays.outline_pairs import outline_rows, siblings
 from mbsd.compiling.callback import Callback
 from mbsd.compiling.jit import COMPILED
 from mbsd.dynamics import repeated_rows
@@ -37,6 +38,9 @@ from mbsd.kinematics.limits.free_wheels import HALF
 from mbsd.kinematics.pose import held_values, mobility
 from mbsd.model.body import Marker
 from mbsd.model.event import Event, Reaching
+from mbsd.model.outlines.contact import tuples_of
+from mbsd.model.outlines.features import DEEPEST, circle_around
+from mbsd.model.outlines.geometry import Corner, size_of
 
 NEAR = 1e-11
 """Gaps below this part of the size (rad) are closed; rates below it by 1 s are zero where bodies rest."""
@@ -44,6 +48,9 @@ ROUNDINGS = ((1.0, 1.0, -1.0, -1.0), (-1.0, 1.0, 1.0, -1.0), (1.0, -1.0, 1.0), (
 """Signs, repeated, of small changes of a state."""
 STILL = 1e-9
 """Rates below this part of the size (rad) by 1 s are zero."""
+
+HALF_DEEPEST = 0.5 * DEEPEST
+"""How deep outlines may get in a step, as part of the lesser size."""
 
 Entry = tuple[np.ndarray, tuple[int, ...]]
 """An array and an index in it."""
@@ -95,7 +102,7 @@ def contacts_of(
         np.zeros((pushing, 2 * pushing + 2)),
         np.zeros((arrays.SHIFT + 1, c)),
         np.zeros((arrays.MOST_LOOKS + 2, 6)),
-        np.zeros((arrays.RESTING + 1, c), np.int64),
+        np.zeros((arrays.STRUCK + 1, c), np.int64),
         *bare,
         np.zeros((2, pushing), np.int64),
         _sticks_of(ready, c, n3, rows),
@@ -106,6 +113,7 @@ def contacts_of(
         repeated_of(ready),
         np.zeros(((ROUNDS + 1) * len(ready.switches.contacts) if log else 0, 2)),
         arrays.Outside(np.zeros(1, np.int64), np.zeros(2), np.zeros(1)),
+        *_outlines_of(ready),
     )
 
 
@@ -215,6 +223,37 @@ def _curves_of(ready: PreparedDynamics) -> arrays.Curves:
     ]
     numbers = ready.packed.system.numbers.copy() if rows else np.zeros(0)
     return arrays.Curves(np.array(place, np.int64).reshape(-1, 4), numbers, np.zeros(len(place)))
+
+
+def _outlines_of(ready: PreparedDynamics) -> tuple[np.ndarray, ...]:
+    """Return the rows of outlines, scratch for their pairs, and the pairs of bodies with circles around them."""
+    packed, known = ready.packed, {contact.gap: k for k, contact in enumerate(ready.switches.contacts)}
+    rows = outline_rows(packed)
+    place = [(known[row.gap], row.relative, row.way, other) for row, other in zip(rows, siblings(rows), strict=True)]
+    pairs: dict[Any, tuple[list[int], list[float]]] = {}
+    for k, row in enumerate(rows):
+        ends = [
+            (m, tuples_of(row.joint.params[key])) for m, key in ((row.joint.i, "outline_i"), (row.joint.j, "outline_j"))
+        ]
+        key = frozenset((marker.body.name, corners) for marker, corners in ends)
+        if key not in pairs:
+            bodies = [packed.body_names.index(marker.body.name) for marker, _ in ends]
+            circles = [_circle_on(packed.com[b], *end) for b, end in zip(bodies, ends, strict=True)]
+            least = min(size_of(corners) for _, corners in ends)
+            pairs[key] = [*bodies, k, k], [*circles[0], *circles[1], HALF_DEEPEST * least]
+        pairs[key][0][3] = k + 1
+    swept = np.array([where for where, _ in pairs.values()], np.int64).reshape(-1, 4)
+    return (
+        np.array(place, np.int64).reshape(-1, 4), np.zeros(len(place)), swept,
+        np.array([numbers for _, numbers in pairs.values()], float).reshape(-1, 7),
+    )  # fmt: skip
+
+
+def _circle_on(com: np.ndarray, marker: Marker, corners: tuple[Corner, ...]) -> tuple[float, float, float]:
+    """Return centre, from the centre of mass, and radius of a circle around an outline about a marker (m)."""
+    x, y, radius = circle_around(corners)
+    c, s = math.cos(marker.angle), math.sin(marker.angle)
+    return marker.x + c * x - s * y - float(com[0]), marker.y + s * x + c * y - float(com[1]), radius
 
 
 def _without(ready: PreparedDynamics, events: Sequence[Event]) -> tuple[Schur, np.ndarray]:

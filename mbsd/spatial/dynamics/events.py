@@ -47,7 +47,7 @@ class Events:
         self.rows: list[tuple[Any, ...]] = []
         """Time, state, derivative, multipliers, work and counted turns of each output beside events."""
         span = end - float(state.clock[TIME])
-        self.contacts = _without_contacts(state, self._arrays(len(state.y[0]), longest, span))
+        self.contacts = no_contacts(state, self._arrays(len(state.y[0]), longest, span))
         self.contacts.clock[arrays.PAUSES] = arrays.BEFORE_AND_AFTER if rows else arrays.AFTER
 
     def follow(self, advance: Callable[[Any, int], int], state: State, end: float, often: bool) -> int:
@@ -175,7 +175,12 @@ class Events:
         return np.concatenate([own @ (np.array(marker.place) - body.com), euler_parameters(own @ marker.axes)])
 
 
-def _without_contacts(state: State, events: SpaceEvents) -> arrays.Contacts:
+def no_events() -> SpaceEvents:
+    """Return arrays of no event, for loops that look for none."""
+    return SpaceEvents(*(np.zeros(0) for _ in SpaceEvents._fields))
+
+
+def no_contacts(state: State, events: SpaceEvents) -> arrays.Contacts:
     """Return arrays of the loop of events for a mechanism whose rows always hold."""
     n, rows = state.y.shape[1], len(state.lam)
     none, whole, square = np.zeros(0), np.zeros((0, 2), np.int64), np.zeros((0, 0))
@@ -190,7 +195,7 @@ def _without_contacts(state: State, events: SpaceEvents) -> arrays.Contacts:
         pose=np.zeros((2, n)), rates=np.zeros((2, n)), lam=np.zeros(rows), force=np.zeros(n),
         parts=arrays.PARTS.copy(), samples=np.zeros((0, len(arrays.PARTS))), answer=np.zeros((0, n)),
         compliance=square, factor=square, tableau=np.zeros((0, 2)), vector=np.zeros((arrays.SHIFT + 1, 0)),
-        intervals=np.zeros((arrays.MOST_LOOKS + 2, 6)), chosen=np.zeros((arrays.RESTING + 1, 0), np.int64),
+        intervals=np.zeros((arrays.MOST_LOOKS + 2, 6)), chosen=np.zeros((arrays.STRUCK + 1, 0), np.int64),
         schur=table, special=whole, basis=np.zeros((2, 0), np.int64),
         sticks=arrays.Sticks(
             np.zeros(0, np.int64), np.zeros((arrays.GIVES + 1, 0)), np.zeros((arrays.BASIS + 1, 0)), square,
@@ -209,4 +214,5 @@ def _without_contacts(state: State, events: SpaceEvents) -> arrays.Contacts:
         ),
         log=np.zeros((0, 2)),
         outside=arrays.Outside(np.zeros(1, np.int64), np.zeros(2), np.zeros(1)),
+        outlines=np.zeros((0, 4), np.int64), pairs=none, swept_place=np.zeros((0, 4), np.int64), swept=np.zeros((0, 7)),
     )  # fmt: skip

@@ -1,6 +1,9 @@
 """Kinds of joints, forces and contacts with automatic parts: importing a module enters its kinds."""
 
-from mechanisms.stages.automatic import cams  # noqa: F401  (cams and Genevas)
+from mechanisms.stages.automatic import (  # noqa: F401
+    cams,  # cams and Genevas
+    outlines,  # outlines that touch
+)
 from mechanisms.stages.automatic.pins import (  # noqa: F401
     bridges,
     pin_solids,

@@ -19,9 +19,10 @@ from shared.contract.quantity import figures
 SECONDS, FADE = 2.4, 0.5
 
 
-SMALL, CLOSER, CLOSEST = 0.15, 0.27, 0.2
-"""Parts of the picture's area: a machine that takes less opens and ends closer, so that it takes so much, from this
-part of the distance at least."""
+SMALL, CLOSER = 0.15, 0.27
+"""Parts of the picture's area: a machine that takes less opens and ends closer, so that it takes about so much."""
+CLOSEST, TRIES = 0.2, 61
+"""Part of the distance at least, and distances that are tried."""
 
 
 def opening(scenery: Scenery) -> Stand:
@@ -29,13 +30,13 @@ def opening(scenery: Scenery) -> Stand:
     whole = scenery.stand(strip=False)
     if scenery.share(scenery.stand()) >= SMALL or scenery.film.travel is not None:
         return whole
-    near, place = whole, _kept(scenery, whole)
-    for part in np.linspace(1.0, CLOSEST, 31)[1:]:
+    place, stands = _kept(scenery, whole), []
+    for part in np.linspace(1.0, CLOSEST, TRIES)[1:]:
         target = point(place + part * (np.array(whole.target) - place))
-        near = replace(whole, target=target, distance=part * whole.distance)
-        if scenery.share(near) >= CLOSER and not scenery.misses(near):
-            break
-    return raised(near, scenery.up, scenery.top)
+        near = raised(replace(whole, target=target, distance=part * whole.distance), scenery.up, scenery.top)
+        if scenery.share(near) >= SMALL and not scenery.misses(near):
+            stands.append(near)
+    return min(stands, key=lambda near: abs(scenery.share(near) - CLOSER), default=whole)
 
 
 def _kept(scenery: Scenery, whole: Stand) -> np.ndarray:

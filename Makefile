@@ -170,6 +170,9 @@ glb-%: libraries always ## the parts with their motion in one file for any glTF 
 view-%: install always ## one HTML page with the machine, its forces and its plots: out/<name>/view.html
 	@$(MBSD) view -- "$$MECHANISM"
 
+article-%: install always ## one HTML page that explains the machine, with numbers to drag: out/<name>/article.html
+	@$(MBSD) article -- "$$MECHANISM"
+
 live-%: install always ## a page that follows the editor: sliders, dragging, fits to a path; prints its address
 	@$(MBSD) live -- "$$MECHANISM"
 

@@ -15,6 +15,7 @@ COMMANDS = {
     "glb": "the parts with their motion as one animation, for any glTF viewer",
     "usd": "the same as a USD stage, .usdc or .usdz",
     "view": "one HTML page with the machine, its forces and its plots",
+    "article": "one HTML page that explains the machine in eight steps",
     "still": "one frame as a picture",
     "contact": "a sheet of twelve frames as contact.png",
     "poster": "the shot's best moment as poster.png",
@@ -24,6 +25,9 @@ COMMANDS = {
     "scene": "save the scene as a .blend that plays the motion",
     "scene-ui": "save the scene and open it in an installed Blender",
 }
+
+WITHOUT_PRESET = ("plots", "compare", "report", "glb", "usd", "view", "article")
+"""Commands that take no preset."""
 
 
 def main() -> int | None:
@@ -68,6 +72,10 @@ def main() -> int | None:
         from render import view
 
         return view.run(name)
+    if command == "article":
+        from render import article
+
+        return article.run(name)
     return _picture(command, name, preset_named(arguments.preset, arguments.aspect), arguments)
 
 
@@ -77,10 +85,10 @@ def _parser() -> argparse.ArgumentParser:
     for command, text in COMMANDS.items():
         sub = commands.add_parser(command, aliases=[command.replace("-", "_")] if "-" in command else [], help=text)
         sub.add_argument("name", help="mechanism; four-bar and four_bar are one")
-        if command not in ("plots", "compare", "report", "glb", "usd", "view"):
+        if command not in WITHOUT_PRESET:
             sub.add_argument("--preset", default="preview", help=f"{', '.join(PRESETS)}; preview if not given")
             sub.add_argument("--aspect", default="", help=f"{', '.join(ASPECTS)}; {WIDE} if not given")
-        if command not in ("plots", "compare", "report", "glb", "usd", "view", "exploded"):
+        if command not in (*WITHOUT_PRESET, "exploded"):
             sub.add_argument(
                 "--show",
                 default="",

@@ -38,6 +38,16 @@ def crank_of(motion: Motion) -> Crank | None:
     return min(cranks, key=lambda crank: crank.body not in driven, default=None)
 
 
+def travels(motion: Motion, name: str) -> bool:
+    """Return True if no pins, guides and slots hold a body, or the body of a point or joint, on ground."""
+    held, pairs = {"ground"}, [set(joint.bodies) for joint in motion.joints.values() if joint.pair is not None]
+    while more := {body for pair in pairs if pair & held for body in pair} - held:
+        held |= more
+    if name in motion.joints:
+        return not held & set(motion.joints[name].bodies)
+    return (motion.points[name].body if name in motion.points else name) not in held
+
+
 def driven_bodies(motion: Motion) -> set[str]:
     """Return bodies that drivers act between, without ground."""
     return {body for driver in motion.drivers.values() for body in driver.bodies or () if body != "ground"}

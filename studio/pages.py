@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from render.view import pictures
 from shared.stage.console import progress, run_cli, say, warn
 from shared.stage.errors import UserError
-from shared.stage.paths import ROOT, Out, all_mechanisms, known_name, out_root, planar_among
+from shared.stage.paths import ROOT, Out, all_mechanisms, known_name, out_root
 from shared.system import missing
 
 # Pages and their pictures, one mechanism after the other: fresh ones are kept, failures listed.
@@ -131,7 +131,7 @@ def main() -> int:
     parser.add_argument("--only", default="", help="these mechanisms: four_bar,pendulum; all if not given")
     parser.add_argument("--fresh", action="store_true", help="print the names whose page has nothing to do")
     asked = parser.parse_args()
-    names = [known_name(name) for name in asked.only.split(",")] if asked.only else planar_among(all_mechanisms())
+    names = [known_name(name) for name in asked.only.split(",")] if asked.only else all_mechanisms()
     if asked.fresh:
         return tell_fresh(names)
     return run(names)

@@ -13,6 +13,7 @@ import numpy as np
 
 TOP, BRICARD, SWEEP = "heavy top, 0.2 s", "Bricard's loop, 1 s", "spatial slider-crank, sweep of 1000 poses"
 CHAINS = {f"chain of {count} universal joints, 1 s": count for count in (1, 10, 40)}
+BATCH, COUNT = "1000 heavy tops, 0.2 s", 1000
 PROBLEMS = (TOP, BRICARD, *CHAINS, SWEEP)
 CODES = ("mbsd", "exudyn", "mujoco")
 STEPS = 1000
@@ -22,7 +23,9 @@ BARS = {
     name: {"exudyn": exudyn, "mujoco": mujoco}
     for name, exudyn, mujoco in zip(PROBLEMS, (200, 300, 2, 9, 30, 50), (15, 20, 10, 6, 6, 8), strict=True)
 }
+BARS[BATCH] = {"mujoco": 10}
 """How many times the time of mbsd each peer takes at least."""
+DURATION[BATCH], LIMITS[BATCH] = DURATION[TOP], LIMITS[TOP]
 SPIN, TOP_MASS, TOP_MOMENTS = (0.0, 150.0, -4.61538), 15.0, (0.234375, 0.46875, 0.234375)
 LINK, LINK_MASS, LINK_MOMENTS = 0.1, 0.1, (1e-5, 0.1 * 0.01 / 12, 0.1 * 0.01 / 12)
 CORNERS = ((0, 0, 0), (1, 0, 0), (1, -1, 0), (1, -1, 1), (0, -1, 1), (0, 0, 1))
@@ -44,6 +47,11 @@ def moments_of_rod(k: int) -> np.ndarray:
     """Return the moments (3,) of rod k of Bricard's loop, .1 m square, about its centre (kg m^2)."""
     along = np.abs(np.subtract(CORNERS[k], CORNERS[k - 1]))
     return along * 0.02 / 12 + (1 - along) * 1.01 / 12
+
+
+def spins() -> np.ndarray:
+    """Return angular velocities (COUNT, 3) of the tops at the start (rad/s), that of the single one first."""
+    return np.array(SPIN) * np.linspace(1.0, 0.9, COUNT)[:, None]
 
 
 def error_at_end(problem: str, place: np.ndarray) -> float:

@@ -11,10 +11,11 @@ import mbsd
 from benchmarks import space
 from mbsd.dynamics.integrators.dop853 import DOP853
 from mbsd.kinematics.steps import Steps
+from mbsd.measures import final
 from mbsd.spatial import Mechanism, constant_rate
 from mbsd.spatial.dynamics.simulate import Run
 from mbsd.spatial.kinematics.prepared import prepare as swept
-from mbsd.spatial.kinematics.sweep import march
+from mbsd.spatial.kinematics.sweep import march_along
 
 VERSION = mbsd.__version__
 TOLERANCES = dict(zip(space.PROBLEMS[:-1], (3.5e-6, 5e-5, 3e-7, 2e-5, 5e-4), strict=True))
@@ -24,6 +25,8 @@ def settings(problem: str) -> str:
     """Return the settings of a run in words."""
     if problem == space.SWEEP:
         return "pos+vel+acc"
+    if problem == space.BATCH:
+        return f"simulate_many, one thread, tolerance {TOLERANCES[space.TOP]:g}"
     return f"dop853, tolerance {TOLERANCES[problem]:g}"
 
 
@@ -99,9 +102,11 @@ def prepare(problem: str) -> tuple[Callable[[], Callable[[], Any]], Callable[[An
 
         def sweep() -> Callable[[], Any]:
             ready.packed.ws.guess[:] = ready.turns
-            return lambda: march(ready, Steps(same_fields, times), False)
+            return lambda: march_along(ready, Steps(same_fields, times), False, np.zeros(0))
 
         return sweep, error
+    if problem == space.BATCH:
+        return _prepare_batch()
     ends, tolerance = np.array([0.0, space.DURATION[problem]]), TOLERANCES[problem]
     run = Run(mechanism(problem), ends, tolerance)
     whole, scratch = run.settings(), run.scratch()
@@ -115,3 +120,16 @@ def prepare(problem: str) -> tuple[Callable[[], Callable[[], Any]], Callable[[An
         return space.error_at_end(problem, sol.point("watched").place[-1])
 
     return fresh, error_at_end
+
+
+def _prepare_batch() -> tuple[Callable[[], Callable[[], Any]], Callable[[Any], float]]:
+    m = top()
+    measure = {axis: final(f"watched.{axis}") for axis in "xyz"}
+
+    def fresh() -> Callable[[], Any]:
+        return lambda: m.simulate_many(
+            space.DURATION[space.TOP], moving={"top": space.spins()}, measure=measure,
+            tolerance=TOLERANCES[space.TOP], threads=1,
+        )  # fmt: skip
+
+    return fresh, lambda many: space.error_at_end(space.TOP, np.array([many[axis][0] for axis in "xyz"]))

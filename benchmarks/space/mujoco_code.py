@@ -12,6 +12,7 @@ from typing import Any
 
 import mujoco
 import numpy as np
+from mujoco import rollout
 
 from benchmarks import space
 
@@ -24,6 +25,8 @@ SOFT = 'solimp="0.9999 0.9999 0.001 0.5 2"'
 
 def settings(problem: str) -> str:
     """Return the settings of a run in words."""
+    if problem == space.BATCH:
+        return f"rollout, one thread, RK4, {COUNTS[space.TOP]} steps"
     loop = ", Newton, softness 2" if problem in (space.BRICARD, space.SWEEP) else ""
     return f"RK4{loop}, {COUNTS[problem]} steps"
 
@@ -102,6 +105,8 @@ def _model(problem: str, steps: int) -> Any:
 
 def prepare(problem: str, count: int = 0) -> tuple[Callable[[], Callable[[], Any]], Callable[[Any], float]]:
     """``fresh`` gives a run, whose making is not timed; ``error`` looks at where it ended."""
+    if problem == space.BATCH:
+        return _prepare_batch(count)
     steps = count or COUNTS[problem]
     model = _model(problem, steps)
     data = mujoco.MjData(model)
@@ -131,6 +136,27 @@ def prepare(problem: str, count: int = 0) -> tuple[Callable[[], Callable[[], Any
         return out
 
     return fresh, error
+
+
+def _prepare_batch(count: int) -> tuple[Callable[[], Callable[[], Any]], Callable[[Any], float]]:
+    steps = count or COUNTS[space.TOP]
+    model = _model(space.TOP, steps)
+    data = mujoco.MjData(model)
+    kept = mujoco.mjtState.mjSTATE_FULLPHYSICS
+    states = np.zeros((space.COUNT, mujoco.mj_stateSize(model, kept)))
+    for state, spin in zip(states, space.spins(), strict=True):
+        data.qvel[:] = spin
+        mujoco.mj_getState(model, data, state, kept)
+
+    def run() -> np.ndarray:
+        return rollout.rollout(model, data, states, nstep=steps)[0]
+
+    def error(run: np.ndarray) -> float:
+        mujoco.mj_setState(model, data, run[0, -1], kept)
+        mujoco.mj_forward(model, data)
+        return space.error_at_end(space.TOP, data.site("watched").xpos)
+
+    return lambda: run, error
 
 
 def _start_crank(model: Any, data: Any) -> None:

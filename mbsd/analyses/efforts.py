@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbsd.arrays.curve_branches import tabulate_along
-from mbsd.arrays.efforts_beside import fill_beside
+from mbsd.arrays.efforts_beside import efforts_beside
 from mbsd.arrays.friction_along import with_friction
 from mbsd.arrays.inertias import coupled, inertia_of, weight_of
 from mbsd.arrays.laws import compiled_laws
@@ -143,13 +143,9 @@ def _past_change_points(m: Model, motion: Solution, actuators: Sequence[str]) ->
             continue
         there = _actuated(m, replace(beside.motion, beside=()), actuators)
         at = np.searchsorted(beside.side.rows, times[rows])
-        nodes, count = np.arange(len(beside.side.nodes)), len(beside.side.rows)
-        both = [
-            np.concatenate([part, np.zeros((count, *part.shape[1:]))])
-            for part in (there.solution.lam, there.solution.wrench)
-        ]
-        fill_beside(motion.packed, beside.side, beside.factor, both[0], both[1], nodes, len(nodes) + np.arange(count))
-        lam[rows], wrench[rows] = (part[len(nodes) :][at] for part in both)
+        solved, scales = there.solution, (motion.packed.row_scale(), motion.packed.size)
+        both = efforts_beside(beside.side, beside.factor, solved.lam, solved.wrench, *scales)
+        lam[rows], wrench[rows] = (part[at] for part in both)
         values = np.stack([there.efforts[name] for name in actuators], axis=1)
         values_near = beside.side.efforts(beside.factor, values, np.ones(len(actuators)))
         for name, effort in zip(actuators, values_near.T, strict=True):

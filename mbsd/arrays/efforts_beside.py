@@ -18,8 +18,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.arrays.packing import Packed
-
 FINITE = 1e-7
 """Part of its largest value below which y vanishes, too."""
 NOISE = 1e-8
@@ -96,24 +94,19 @@ class Side:
         return np.where(is_finite, limit, unbounded)
 
 
-def fill_beside(
-    packed: Packed,
-    side: Side,
-    factor: np.ndarray,
-    lam: np.ndarray,
-    wrench: np.ndarray,
-    nodes: np.ndarray,
-    rows: np.ndarray,
-) -> None:
-    """Fill lam (T, m) and wrench (T, joints, 3) at ``rows`` (R,) from ``nodes`` (N,); NaN without nodes.
+def efforts_beside(
+    side: Side, factor: np.ndarray, lam: np.ndarray, wrench: np.ndarray, row_scale: np.ndarray, size: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return lam (R, m) and wrench (R, joints, 3 or 6) at the rows of a side; NaN without nodes.
 
-    ``factor`` (N + R,): D at these.
+    ``lam`` (N, m) and ``wrench`` (N, joints, 3 or 6) at its nodes; ``factor`` (N + R,): D at both. ``row_scale`` (m,)
+    makes residuals dimensionless, lengths by ``size`` (m).
     """
-    arms = 1.0 / np.concatenate(
-        [1.0 / (packed.row_scale() * packed.size), np.tile([1.0, 1.0, packed.size], wrench.shape[1])]
-    )
-    flat = wrench.reshape(len(wrench), -1)
-    values = np.full((len(rows), lam.shape[1] + flat.shape[1]), np.nan)
-    if len(nodes):
-        values = side.efforts(factor, np.hstack([lam[nodes], flat[nodes]]), arms)
-    lam[rows], wrench[rows] = values[:, : lam.shape[1]], values[:, lam.shape[1] :].reshape(len(rows), *wrench.shape[1:])
+    count, (joints, parts) = len(side.rows), wrench.shape[1:]
+    turning = parts // 2
+    ones = np.tile([1.0] * (parts - turning) + [size] * turning, joints)
+    values = np.full((count, lam.shape[1] + parts * joints), np.nan)
+    if len(side.nodes):
+        arms = 1.0 / np.concatenate([1.0 / (row_scale * size), ones])
+        values = side.efforts(factor, np.hstack([lam, wrench.reshape(len(wrench), -1)]), arms)
+    return values[:, : lam.shape[1]], values[:, lam.shape[1] :].reshape(count, joints, parts)

@@ -16,7 +16,7 @@ PLAIN = ("m/s²", "rad", "rad/s", "rad/s²", "°", "%", "cm³", "km/h", "rpm", "
 """Units without prefixes."""
 STEPS = {
     "kg": ((1e3, 1e-3, "t"), (1.0, 1.0, "kg"), (0.0, 1e3, "g")),
-    "kg m²": ((0.01, 1.0, "kg m²"), (0.0, 1e4, "kg cm²")),
+    "kg m²": ((0.01, 1.0, "kg·m²"), (0.0, 1e4, "kg·cm²")),
 }
 """Units that others stand for, without prefixes: from which number on (SI), the factor and the unit."""
 MINUS = "\N{MINUS SIGN}"
@@ -29,9 +29,10 @@ ANGLES = (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0, 180.0, 360.0)
 
 
 def written(value: float, unit: str, digits: int = 3) -> str:
-    """Return ``value`` (SI) with an engineering prefix: ``12.3 mN``, ``0 N``, ``1.29 kN m``, ``−40 µm``."""
+    """Return ``value`` (SI) with an engineering prefix: ``12.3 mN``, ``0 N``, ``1.29 kN·m``, ``−40 µm``."""
     if not math.isfinite(value):
-        return f"no number of {unit}" if math.isnan(value) else f"{MINUS if value < 0 else ''}∞ {unit}".rstrip()
+        named = dotted(unit)
+        return f"no number of {named}" if math.isnan(value) else f"{MINUS if value < 0 else ''}∞ {named}".rstrip()
     factor, named = prefixed(float(f"{abs(value):.{digits}g}"), unit)  # rounded first: 999.9996 is 1 k
     digits = digits if abs(value * factor) < 1000.0 else max(digits, DIGITS)
     return f"{figures(value * factor, digits)}{'' if named in ('°', '%') else ' '}{named}".rstrip()
@@ -40,15 +41,20 @@ def written(value: float, unit: str, digits: int = 3) -> str:
 def prefixed(largest: float, unit: str) -> tuple[float, str]:
     """Return the factor from SI and the unit with its prefix for numbers up to ``largest``.
 
-    For 1290 N they are 0.001 and ``kN``.
+    For 1290 N they are 0.001 and ``kN``, and a product of units has a dot: ``N·m``.
     """
     if unit in PLAIN or not largest or not math.isfinite(largest):
-        return 1.0, unit
+        return 1.0, dotted(unit)
     if unit in STEPS:
         return next((factor, named) for least, factor, named in STEPS[unit] if abs(largest) >= least)
     power = min(max(3 * math.floor(math.log10(abs(largest)) / 3 + 1e-9), -12), 12)
     power = min(power, 0) if unit in DOWN else power
-    return 10.0**-power, f"{PREFIXES[power]}{unit}"
+    return 10.0**-power, f"{PREFIXES[power]}{dotted(unit)}"
+
+
+def dotted(unit: str) -> str:
+    """Return a product of units with a dot, ``N·m``."""
+    return unit.replace(" ", "·")
 
 
 def figures(value: float, digits: int = DIGITS) -> str:
@@ -100,7 +106,7 @@ def labelled(words: str, unit: str) -> str:
     """
     if unit in ("", "1"):
         return words
-    return f"{words} / ({unit})" if set(unit) & set("/ ") else f"{words} / {unit}"
+    return f"{words} / ({dotted(unit)})" if set(unit) & set("/ ·") else f"{words} / {unit}"
 
 
 def angle_step(span: float, most: int = 9) -> float:

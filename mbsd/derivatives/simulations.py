@@ -18,7 +18,7 @@ from mbsd.derivatives.driven.sweeps import displaced, extent
 from mbsd.derivatives.driven.tangents import Tangent, by_numbers, has_kinks
 from mbsd.derivatives.free.explicit_time import find_toggles
 from mbsd.derivatives.free.free_tangents import AT_ONCE, FreeTangents, Stretch, Tangents, joined
-from mbsd.derivatives.free.guards import End, contacts_of, refuse_contact_at_start, unshared, ways_of
+from mbsd.derivatives.free.guards import End, contacts_of, refuse_contact_at_start, shared_least, unshared, ways_of
 from mbsd.derivatives.free.indexing import held_between, solve_ends, unwatched
 from mbsd.derivatives.free.jumps import Jump, jumps_of
 from mbsd.derivatives.free.linear_motion import LATEST, NODES
@@ -254,9 +254,9 @@ class SimulationTangents:
         parts: list[Tangents] = []
         errors: list[np.ndarray] = []
         self.ends, self._off = None, 0.0
-        autonomous, passing = self._is_autonomous(along), find_toggles(along.t, along.a)
         compact = self.terms.rows(along)[2]
         shared = self._unshare(along, compact, edges)
+        autonomous, passing = self._is_autonomous(along), find_toggles(along.t, along.a)
         held = [held_between(self.terms, self.variants, along.take(slice(a, b))) for a, b in pairwise(edges)]
         for (a, b), (terms, _) in zip(pairwise(edges), held, strict=True):
             if terms is not self.terms:
@@ -316,22 +316,31 @@ class SimulationTangents:
             first = k
 
     def _unshare(self, along: Along, compact: np.ndarray, edges: list[int]) -> list[list[int]]:
-        """Let rows that hold carry all friction at rest; returns the rows that share it, of each stretch."""
+        """Let rows that hold carry all friction at rest; returns the rows that share it, of each stretch.
+
+        Rows that repeat each other share their loads in the least way.
+        """
         out: list[list[int]] = []
         for a, b in pairwise(edges):
             part = along.take(slice(a, b))
-            _, ways = ways_of(self.terms.packed, part)
+            dependent, ways = ways_of(self.terms.packed, part)
             if ways:
                 along.lam[a:b] = unshared(self.terms, part, compact[a:b], ways)
                 first = self.terms.packed.first_row
                 others = [int(first[k]) + 1 for k, _ in contacts_of(self.terms.packed) if first[k + 1] > first[k] + 1]
                 ways = [row for row in others if part.held is not None and (part.held[0, row] or row in ways)]
+            elif along.held is not None and len(part.lam[0]) and not dependent:
+                rank = len(self.stretch_rows(part, 0))
+                if rank < along.held[a].sum():
+                    along.a[a:b], along.lam[a:b] = shared_least(self.terms, part, compact[a:b], rank)
             out.append(ways)
         return out
 
     def _stretch(self, along: Along, compact: np.ndarray, asked: np.ndarray, nodes: np.ndarray) -> Stretch:
         sliding, _ = ways_of(self.terms.packed, along)
-        return Stretch(along, compact, self.stretch_rows(along, 0), sliding, asked, nodes)
+        assert along.held is not None
+        rows, holding = self.stretch_rows(along, 0), np.flatnonzero(along.held[0])
+        return Stretch(along, compact, rows, holding, sliding, asked, nodes)
 
     def stretch_rows(self, along: Along, k: int) -> np.ndarray:
         """Independent rows among those that hold at node k."""

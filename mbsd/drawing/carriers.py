@@ -23,11 +23,12 @@ Kind = Literal["ground", "body", "place", "line", "shapes"]
 
 @dataclass(frozen=True)
 class End:
-    """A point of a body, in its frame (m)."""
+    """A point of a body, in its frame (m); ``z`` of bodies in space."""
 
     body: str
     x: float = 0.0
     y: float = 0.0
+    z: float | None = None
 
 
 class Frames:

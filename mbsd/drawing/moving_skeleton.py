@@ -51,7 +51,7 @@ class Moving:
 def moving(solution: Solution) -> Moving:
     """Return the skeleton of a solution."""
     m, tracks = solution.mechanism, tracks_of(solution)
-    steps = _steps(solution.t, SHAPES)
+    steps = equal_steps(solution.t, SHAPES)
     places = np.unique(np.linspace(0, len(steps) - 1, LOOKED_AT).round().astype(int))
     steady = steady_of(m, [tracks.pose(int(step)) for step in steps[places]], _colours(m), Recorder)
     first = drawn_at(m, tracks, steady, int(steps[0]))
@@ -100,7 +100,7 @@ def _colours(m: Model) -> dict[str, str]:
     return {name: f"body:{name}" for name in m.bodies if name != "ground"}
 
 
-def _steps(t: np.ndarray, count: int) -> np.ndarray:
+def equal_steps(t: np.ndarray, count: int) -> np.ndarray:
     """Return the outputs nearest to equal times, the first and the last with them."""
     times = np.linspace(t[0], t[-1], count + 1)
     return np.unique(np.abs(t[:, None] - times).argmin(axis=0))

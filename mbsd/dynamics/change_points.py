@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from mbsd.arrays.curve_branches import tabulate_along
-from mbsd.arrays.efforts_beside import Side, fill_beside, lagrange
+from mbsd.arrays.efforts_beside import Side, efforts_beside, lagrange
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import SimulationError
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
@@ -93,10 +93,8 @@ def with_efforts_beside(
             side, there = known.side, known.motion
             beside.append(known)
             rows = np.searchsorted(solution.t, side.rows)
-            alone = np.arange(len(side.nodes))
-            both = [np.concatenate([there.lam, lam[rows]]), np.concatenate([there.wrench, wrench[rows]])]
-            fill_beside(solution.packed, side, known.factor, both[0], both[1], alone, len(alone) + np.arange(len(rows)))
-            lam[rows], wrench[rows] = (part[len(alone) :] for part in both)
+            scales = solution.packed.row_scale(), solution.packed.size
+            lam[rows], wrench[rows] = efforts_beside(side, known.factor, there.lam, there.wrench, *scales)
             filled[rows] = looked[rows] = True
             margin[rows] = np.abs(
                 lagrange(side.nodes, side.rows) @ (there.singularity_margin * np.sign(side.nodes - side.time))

@@ -17,13 +17,12 @@ from mbsd.base.quantity import written
 from mbsd.equations.assembly import residual_and_jacobian, tabulate
 from mbsd.kinematics import newton
 from mbsd.kinematics.change_points.assemblies import Solver
-from mbsd.kinematics.change_points.passages import NEAR_END, Passage, Passages
-from mbsd.kinematics.elimination import Elimination, plan
+from mbsd.kinematics.change_points.passages import NEAR_END, Passage
 from mbsd.kinematics.groups.carried import COS, DOUBTED, OPEN, SOLVED
 from mbsd.kinematics.groups.groups import Groups
 from mbsd.kinematics.groups.solve import SOLVED_CLOSE, Poses, solve_groups
-from mbsd.kinematics.pose.mobility import best_rows
-from mbsd.kinematics.prepared import Prepared, sample_jacobians
+from mbsd.kinematics.newton_march import NewtonMarch
+from mbsd.kinematics.prepared import Prepared
 from mbsd.kinematics.steps import Steps
 
 ZERO_LENGTH = 1e-12
@@ -34,8 +33,17 @@ class March:
     """A motion at the times asked for, and at all steps on the way."""
 
     def __init__(
-        self, q: np.ndarray, v: np.ndarray, a: np.ndarray, steps: Steps, closed: bool, passages: Sequence[Passage] = ()
+        self,
+        q: np.ndarray,
+        v: np.ndarray,
+        a: np.ndarray,
+        steps: Steps,
+        closed: bool,
+        passages: Sequence[Passage] = (),
+        switch_at: Sequence[float] | np.ndarray = (),
     ) -> None:
+        self.switch_at = switch_at
+        """Times (s) at which it goes on to the other assembly."""
         self.steps, self.closed = steps, closed
         """``closed``: solved in closed form."""
         self.passages = passages
@@ -86,20 +94,19 @@ def march_along(ready: Prepared, times: np.ndarray, switch_at: Sequence[float] |
             return (_near_ends(ready, times) if ends_close else None) or March(q, v, a, steps, True)
     out_of_reach = steps.out_of_reach
     steps = Steps(ready.packed, times)  # those of the closed form may be just where branches meet
-    q, v, a, passages = _newton(ready, steps, switches)
+    march = _newton(ready, steps, switches)
     if out_of_reach is not None:
         raise error_out_of_reach(ready.packed, out_of_reach)
-    return March(q, v, a, steps, False, passages)
+    return march
 
 
 def _near_ends(ready: Prepared, times: np.ndarray) -> March | None:
     """Return the motion by Newton-Raphson if it begins or ends near a change point, else None."""
-    steps = Steps(ready.packed, times)
     try:
-        q, v, a, passages = _newton(ready, steps, np.zeros(0))
+        march = _newton(ready, Steps(ready.packed, times), np.zeros(0))
     except MechanismError:
         return None
-    return March(q, v, a, steps, False, passages) if passages else None
+    return march if march.passages else None
 
 
 def _closed_form(
@@ -163,74 +170,46 @@ def _all_close(ready: Prepared, steps: Steps, q: np.ndarray) -> bool:
     return float(np.abs(phi).max()) <= REDUNDANT_GAP * max(packed.size, 1.0)
 
 
-def _newton(
-    ready: Prepared, steps: Steps, switch_at: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[Passage]]:
-    """Return positions, velocities, accelerations (T, 3 nb) at all steps, and passages past change points.
+class _NewtonMarch(NewtonMarch):
+    """Newton-Raphson along the steps of a planar mechanism."""
 
-    Steps that the kernel refuses are divided.
-    """
-    packed, sequence, factors = ready.packed, ready.sequence, ready.factors
-    arrays = _arrays(ready.q0, len(steps.times), sequence)
-    passages = Passages(Solver(packed, sequence, factors), steps, switch_at)
-    first = chosen = 0
-    while first < len(steps.times):
-        q, v, a, residual, determinant = arrays
-        status, index = newton.sweep(
-            packed.system, sequence, factors, packed.ws, packed.size,
-            newton.DrivenMotion(steps.times, steps.drives, steps.stride, q, v, a), residual, determinant, first, chosen,
+    def room(self) -> dict[str, np.ndarray]:
+        """Return arrays for all steps, with the start in their first rows."""
+        count, n3 = len(self.steps.times), len(self.ready.q0)
+        arrays = {name: np.zeros((count, n3)) for name in self.poses}
+        arrays["q"][0] = self.ready.q0
+        return arrays | {"residual": np.zeros(count), "determinant": np.zeros((count, len(self.sequence.ends)))}
+
+    def solver(self) -> Solver:
+        """Return Newton-Raphson with the rows in use, for passages."""
+        return Solver(self.ready.packed, self.sequence, self.factors)
+
+    def solve(self, first: int, chosen: int) -> tuple[int, int]:
+        """Solve the steps from ``first`` on, by rows chosen at ``chosen``; returns status and index."""
+        packed, steps, arrays = self.ready.packed, self.steps, self.arrays
+        out = newton.sweep(
+            packed.system, self.sequence, self.factors, packed.ws, packed.size,
+            newton.DrivenMotion(steps.times, steps.drives, steps.stride, arrays["q"], arrays["v"], arrays["a"]),
+            arrays["residual"], arrays["determinant"], first, chosen,
         )  # fmt: skip
         packed.specials.check()
-        if status == newton.DONE:
-            break
-        if index == 0:
-            raise error_of_step(packed, status, steps.times, 0, steps.drives, q, v)
-        if not passages.passages and steps.follow_laws():
-            arrays, first, chosen = _arrays(ready.q0, len(steps.times), sequence), 0, 0
-            continue
-        if ready.mobility.redundant_rows and index - 1 > chosen:
-            residual_and_jacobian(packed.system, q[index - 1], steps.drives[index - 1], packed.ws)
-            kept = best_rows(packed, sequence.rows)
-            if kept is not None:
-                sequence, factors = plan(sample_jacobians(packed), kept, packed.system.row_body)
-                passages.solver = Solver(packed, sequence, factors)
-                first = chosen = index - 1
-                arrays = *arrays[:4], np.zeros((len(steps.times), len(sequence.ends)))
-                continue
-        passage = passages.pass_ahead(index - 1, q, v)
-        if passage is not None:
-            arrays, first = _gone_on(passage, steps, arrays)
-            chosen = first
-            continue
-        if not steps.divide(index):
-            raise error_of_step(packed, status, steps.times, index, steps.drives, q, v)
-        arrays = tuple(np.insert(array, index, 0.0, axis=0) for array in arrays)
-        first = index
-    q, v, a, residual, determinant = arrays
+        return out
+
+    def error_of_step(self, status: int, index: int) -> Exception:
+        """Return the error for a refused step that nothing cures."""
+        steps, arrays = self.steps, self.arrays
+        return error_of_step(self.ready.packed, status, steps.times, index, steps.drives, arrays["q"], arrays["v"])
+
+
+def _newton(ready: Prepared, steps: Steps, switch_at: np.ndarray) -> March:
+    """Return the motion by Newton-Raphson."""
+    march = _NewtonMarch(ready, steps, switch_at)
+    march.follow()
     if len(steps.times):
-        passages.pass_ends(q, v, determinant)
-        refuse_disagreeing(packed, steps.times, residual, q, steps.drives)
-    passages.refuse_missed_switches()
-    return *passages.fill(q, v, a), passages.passages
-
-
-def _gone_on(passage: Passage, steps: Steps, arrays: tuple[np.ndarray, ...]) -> tuple[tuple[np.ndarray, ...], int]:
-    """Return the arrays (T, ...) of steps left, filled right beyond a passage, and the first to solve."""
-    kept = int(np.searchsorted(steps.times, passage.start, side="right"))
-    out = tuple(
-        np.concatenate([array[:kept], np.zeros((len(steps.times) - kept, *array.shape[1:]))]) for array in arrays
-    )
-    first = kept + int(np.argmin(np.append(passage.is_near(steps.times[kept:]), False)))
-    for array, part in zip(out, passage.motion(steps.times[kept:first]), strict=False):
-        array[kept:first] = part
-    return out, first
-
-
-def _arrays(q0: np.ndarray, count: int, sequence: Elimination) -> tuple[np.ndarray, ...]:
-    n3, blocks = len(q0), len(sequence.ends)
-    q, v, a = (np.zeros((count, n3)) for _ in range(3))
-    q[0] = q0
-    return q, v, a, np.zeros(count), np.zeros((count, blocks))
+        refuse_disagreeing(ready.packed, steps.times, march.arrays["residual"], march.arrays["q"], steps.drives)
+    march.fill()
+    q, v, a = (march.arrays[name] for name in march.poses)
+    return March(q, v, a, steps, False, march.passages.passages, switch_at)
 
 
 RUNAWAY = 30.0

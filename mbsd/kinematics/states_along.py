@@ -1,12 +1,14 @@
 """States of forces, such as pressures, along a driven motion: first-order equations.
 
-    s' = f(t, q(t), v(t), s)     q, v: quintics through the outputs;  LSODA, stiff or not, from jump to jump of laws
+    s' = f(t, q(t), v(t), s)     q, v: quintics through poses;  LSODA, stiff or not, from jump to jump of laws
 
-They begin as a kind of force says, with an effort of 0 where that decides: what is to be carried, the drivers carry.
+Poses are those of the outputs, and others between them where quintics would miss the motion. States begin as a kind of
+force says, with an effort of 0 where that decides: what is to be carried, the drivers carry.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
@@ -23,12 +25,38 @@ from mbsd.results.measured import measured, measured_rate
 
 TOLERANCE = 1e-9
 """Relative, and of a state of ``States.one``."""
+MISSED = 1e-8
+"""Error of quintics, in sizes and rad, with which they are taken as they are."""
+FINEST = 1e-4
+"""Part of the whole time below which no interval is halved: a law that jumps is met nowhere."""
+
+Motion = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""q, v, a (T, 3 nb)."""
+
+
+def close_times(packed: Packed, t: np.ndarray, solve: Callable[[np.ndarray], Motion]) -> np.ndarray:
+    """Return the times t (T,) of a motion (s) and others, so near that quintics between them miss no pose.
+
+    ``solve`` gives the motion at rising times, which begin with t[0].
+    """
+    scale, begins = np.concatenate([np.ones(3), packed.column_scale()]), t[:-1]
+    while len(begins):
+        here = np.searchsorted(t, begins)
+        middle = 0.5 * (t[here] + t[here + 1])
+        every = np.union1d(t, middle)
+        motion, half = np.stack(solve(every), axis=-1), (middle - t[here])[:, None]
+        first, last = (motion[np.searchsorted(every, t[row])] for row in (here, here + 1))
+        poses = np.einsum("pcx,px->pc", hermite_coefficients(2.0 * half[:, 0], first, last), half ** np.arange(6))
+        missed = np.abs(poses - motion[np.searchsorted(every, middle), :, 0]) / scale
+        far = (missed.max(axis=1) > MISSED) & (half[:, 0] > float(t[-1] - t[0]) * FINEST)
+        begins, t = np.concatenate([begins[far], middle[far]]), np.union1d(t, middle[far])
+    return t
 
 
 def states_along(packed: Packed, t: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray | None:
     """Return (T, n) states (SI) along a motion q, v, a (T, 3 nb) at times (T,); None without states.
 
-    Times rise.
+    Times rise, and are near each other (``close_times``).
 
     Raises SimulationError where they grow without bound.
     """

@@ -10,8 +10,9 @@ import numpy as np
 
 from mbsd.arrays.chambers import check_pistons, phase_changes, whole_cycles
 from mbsd.arrays.curve_branches import CurveBranches
-from mbsd.arrays.efforts_beside import fill_beside
+from mbsd.arrays.efforts_beside import efforts_beside
 from mbsd.arrays.laws import compiled_laws, jump_times, reach_beside
+from mbsd.arrays.states import with_states
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError, ModelWarning
 from mbsd.base.names import shown
@@ -24,7 +25,7 @@ from mbsd.kinematics.march import March, march_along
 from mbsd.kinematics.multipliers import Efforts, inverse_dynamics, singularity_margin
 from mbsd.kinematics.period import MOST_TURNS, common_period, repetition
 from mbsd.kinematics.prepared import Prepared, prepare, prepare_beside
-from mbsd.kinematics.states_along import states_along
+from mbsd.kinematics.states_along import Motion, close_times, states_along
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import equal_times, rising_times
 from mbsd.results.measured import check_states
@@ -84,10 +85,11 @@ def _solution(m: Model, ready: Prepared, grid: np.ndarray, march: March) -> Solu
 
     Efforts near change points come from poses beside.
     """
+    packed = ready.packed
     sides = [(passage, side) for passage in march.passages for side in sides_of(passage, grid)]
     if not sides:
         q, v, a, drives = march.q, march.v, march.a, march.drives
-        states = _states(ready, grid, q, v, a)
+        states = _states(ready, march, grid, q)
         loads = inverse_dynamics(ready, grid, drives, q, v, a, states)
         return _named(m, ready, march, (grid, drives, q, v, a), loads, states)
     every = np.union1d(grid, np.concatenate([side.nodes for _, side in sides]))
@@ -100,7 +102,7 @@ def _solution(m: Model, ready: Prepared, grid: np.ndarray, march: March) -> Solu
         for part, source in zip(parts, passage.motion(new), strict=True):
             part[np.searchsorted(every, new)] = source
         solved[np.searchsorted(every, side.rows)] = False
-    drives, states = ready.packed.drives(every), _states(ready, every, *parts)
+    drives, states = ready.packed.drives(every), _states(ready, march, every, parts[0])
     q, v, a = (part[solved] for part in parts)
     known = None if states is None else states[solved]
     loads = inverse_dynamics(ready, every[solved], drives[solved], q, v, a, known)
@@ -110,7 +112,8 @@ def _solution(m: Model, ready: Prepared, grid: np.ndarray, march: March) -> Solu
     for passage, side in sides:
         nodes, rows = np.searchsorted(every, side.nodes), np.searchsorted(every, side.rows)
         factor = determinant_of(passage, np.append(side.nodes, side.rows))
-        fill_beside(ready.packed, side, factor, lam, wrench, nodes, rows)
+        scales = packed.row_scale(), packed.size
+        lam[rows], wrench[rows] = efforts_beside(side, factor, lam[nodes], wrench[nodes], *scales)
         if approached is not None and len(nodes):
             approached[rows] = approached[nodes[0]]
         beside.append((side, factor))
@@ -145,11 +148,23 @@ def _named(
     )
 
 
-def _states(ready: Prepared, times: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray | None:
-    """Return (T, n) states of forces (SI) along the motion, None without any. Raises SimulationError."""
-    states = states_along(ready.packed, times, q, v, a)
-    if states is not None:
-        check_states(ready.packed, times, q, states)
+def _states(ready: Prepared, march: March, times: np.ndarray, q: np.ndarray) -> np.ndarray | None:
+    """Return (T, n) states of forces (SI) along the motion, None without any. Raises SimulationError.
+
+    ``q`` (T, 3 nb): poses at ``times`` (T,) (s), which may be far from each other.
+    """
+    if not with_states(ready.packed).states:
+        return None
+
+    def solve(every: np.ndarray) -> Motion:
+        motion = march_along(ready, every, march.switch_at)
+        return motion.q, motion.v, motion.a
+
+    close = close_times(ready.packed, times, solve)
+    states = states_along(ready.packed, close, *solve(close))
+    assert states is not None
+    states = states[np.searchsorted(close, times)]
+    check_states(ready.packed, times, q, states)
     return states
 
 

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from typing import Self
 
     from mbsd.dynamics.batch.simulate_many import Simulations
+    from mbsd.dynamics.measures.kinds import Measure
     from mbsd.results.views import Mobility
     from mbsd.spatial.analyses.equilibrium import Equilibrium
     from mbsd.spatial.analyses.linearise import Linearisation
@@ -55,17 +56,19 @@ class Mechanism(Building):
         duration: float | None = None,
         steps: int = 360,
         times: Sequence[float] | np.ndarray | None = None,
+        switch_at: Sequence[float] | np.ndarray = (),
     ) -> Solution:
         """Solve the driven motion: poses, velocities, accelerations, reactions, driver efforts.
 
         ``steps`` equal steps over ``duration`` seconds, both ends included; by default over the common period of the
         laws of the drivers. ``times`` (s), rising, replaces both. Steps in between keep the motion on its assembly
-        branch. Raises AssemblyError where the joints do not close at the start, MobilityError where drivers and
-        freedoms do not match, SingularPoseError and BranchError where the motion cannot go on.
+        branch. Change points are passed on the smooth continuation; at those of the times ``switch_at`` (s) the motion
+        goes on to the other assembly. Raises AssemblyError where the joints do not close at the start, MobilityError
+        where drivers and freedoms do not match, SingularPoseError and BranchError where the motion cannot go on.
         """
         from mbsd.spatial.kinematics.sweep import sweep
 
-        return sweep(self, duration, steps, times)
+        return sweep(self, duration, steps, times, switch_at)
 
     def simulate(
         self,
@@ -85,31 +88,41 @@ class Mechanism(Building):
         coordinates, which events and friction need; by default the one that is usually quicker. Raises MobilityError
         for a body without mass or inertia, SimulationError where the integration cannot go on.
         """
-        from mbsd.spatial.dynamics.simulate import simulate
+        from mbsd.spatial.dynamics.simulate import request_for, simulate
 
-        return simulate(self, duration, steps, times, tolerance, event_rows, formulation)
+        return simulate(self, event_rows, request_for(self, duration, steps, times, tolerance, formulation))
 
     def simulate_many(
         self,
-        measure: Callable[[Solution], Mapping[str, Any]],
         duration: float | None = None,
         vary: Mapping[str, Mapping[str, Sequence[float] | np.ndarray]] | None = None,
         start: Mapping[str, Sequence[float] | np.ndarray] | None = None,
         moving: Mapping[str, Sequence[float] | np.ndarray] | None = None,
+        measure: Mapping[str, Measure] | Callable[[Solution], Mapping[str, Any]] | None = None,
         steps: int = 360,
         times: Sequence[float] | np.ndarray | None = None,
         tolerance: float = 1e-7,
+        formulation: str = "auto",
+        threads: int | None = None,
+        progress: Callable[[float], None] | None = None,
     ) -> Simulations:
-        """Simulate n times with other numbers and starts; return what ``measure`` says of each solution.
+        """Simulate n times with other numbers and starts, on all cores, and keep measures alone.
 
-        ``vary``: names to arguments of :meth:`change` and their (n,) values; ``start`` and ``moving``: names to what
-        :meth:`start_near` (degrees, m) and :meth:`start_moving` take. A single value is that of all. Simulations that
-        fail have a reason there. Raises ModelError for what cannot be asked.
+        ``vary``: names to arguments of :meth:`change` and their (n,) or (n, k) values; ``start`` and ``moving``: names
+        to what :meth:`start_near` (degrees, m) and :meth:`start_moving` take. A single value is that of all.
+        ``measure``: names to measures (mbsd.measures), or a function of a solution that gives numbers by name, for
+        which each simulation is made by itself. The other arguments are those of :meth:`simulate`; ``progress`` gets
+        the part that is done, ``threads`` is one a core by default.
+
+        What can be simulated in one compiled loop is, the rest one by one: ``way`` of the result says which and why.
+        Simulations that fail have a reason there. Raises ModelError for what cannot be asked.
         """
-        from mbsd.spatial.batch import simulate_many
+        from mbsd.spatial.batch.designs import designs_of
+        from mbsd.spatial.batch.simulate_many import simulations
+        from mbsd.spatial.dynamics.simulate import request_for
 
-        named = {"duration": duration, "steps": steps, "times": times, "tolerance": tolerance}
-        return simulate_many(self, measure, vary or {}, start or {}, moving or {}, named)
+        asked = request_for(self, duration, steps, times, tolerance, formulation)
+        return simulations(designs_of(self, vary, start, moving), measure, asked, threads, progress)
 
     def change(self, name: Body | Joint | Force | str, **values: Any) -> None:
         """Change arguments of the method that added a body, joint, driver, force or event.

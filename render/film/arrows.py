@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from render.film.clock import Clock
 from render.film.scene import ArcSpec, ArrowSpec, LegendRow, Point, across_axes
 from render.film.vectors import LONGEST, TINY, UNIT, Torque, Vector, at_time, lifted, scales_of
-from shared.contract import AnyMotion
+from render.magnitudes import travels
+from shared.contract import AnyMotion, Motion
 from shared.contract.quantity import figures, live, written
 from shared.contract.shot import Shot
 from shared.contract.signals import SIGNALS, rgb
@@ -253,10 +254,11 @@ def number(motion: AnyMotion, shot: Shot) -> Callable[[float], str]:
         point = motion.points[name]
         speeds = np.hypot(np.hypot(point.vx, point.vy), getattr(point, "vz", 0.0))[:, None]
         slow, fast = live(speeds[:, 0].tolist(), "m/s", FIGURES), live((3.6 * speeds[:, 0]).tolist(), "km/h", FIGURES)
+        away = isinstance(motion, Motion) and travels(motion, name)
 
         def speed(t: float) -> str:
             v = float(at_time(time, speeds, t)[0])
-            return f"{name}  {slow(v)}   {fast(3.6 * v)}"
+            return f"{name}  {slow(v)}   {fast(3.6 * v)}" if away else f"{name}  {slow(v)}"
 
         return speed
     load = motion.drivers.get(name) or motion.forces[name]

@@ -63,7 +63,7 @@ class Subject:
         there.
         """
         self.machine, self.around, self.drawn, self.sharp, self.way = machine, around, drawn, sharp, way
-        self.few, self.things = outermost(machine), tuple(things)
+        self.few, self.things = outermost(machine), tuple(outermost(thing) for thing in things)
 
 
 class FilmCamera:

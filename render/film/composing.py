@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import msgspec
@@ -58,7 +58,7 @@ class View:
 
 KEPT = 0.75
 """Part of what the machine may fill that it fills at least, in a picture that is wider for what stands around."""
-NEAR_MISS, AIR = 0.17, 0.98
+NEAR_MISS, AIR = 0.17, 0.96
 """Least part of its area by which a thing is cut, for a sliver looks like a mistake; room beside what is whole."""
 TRIES = 16
 """Parts of what stands around that are tried."""
@@ -76,9 +76,9 @@ def held(
 
     These are all of the ``machine`` (m, 3), arrows that are ``drawn`` (k, 3) about it, and what stands ``around`` (l,
     3) as far as the machine then fills :data:`FILLED`; beyond that, it may leave the frame. Where one of the ``things``
-    (i, 3) among it would be cut by a sliver, the picture is wider, as long as the machine fills :data:`KEPT` of that;
-    else it is closer, so that the thing is cut on purpose. ``few`` are the :func:`outermost` of the machine, where they
-    are known.
+    (i, 3) among it would be cut, the picture is wider until all are whole, as long as the machine fills :data:`KEPT` of
+    that; else it is closer, so that things are cut on purpose. ``few`` are the :func:`outermost` of the machine, where
+    they are known.
     """
     middle = (machine.min(axis=0) + machine.max(axis=0)) / 2
     drawn = middle + DRAWN * (drawn - middle)
@@ -103,11 +103,27 @@ def held(
         for _ in range(STEPS):
             half = (low + high) / 2
             low, high = (half, high) if fills(half) >= most else (low, half)
-        wider = [part for part in np.linspace(low, 1.0, TRIES) if part == low or fills(part) >= KEPT * most]
-        parts = [*wider, *np.linspace(low, 0.0, TRIES)[1:]]
-        cuts = [max((near_miss(view, stood(part), thing) for thing in things), default=0.0) for part in parts]
-        low = float(parts[int(np.argmin(np.round(cuts, 3)))])
+        low = _uncut(view, stood, things, low, lambda part: fills(part) >= KEPT * most)
     return np.concatenate([machine, drawn, middle + low * (around - middle)])
+
+
+def _uncut(
+    view: View, stood: Callable[[float], Array], things: Sequence[Array], low: float, is_large: Callable[[float], bool]
+) -> float:
+    """Return the part of the surroundings from which no thing is cut by a sliver.
+
+    It is the closest from which all are whole while the machine ``is_large``, else one near ``low`` that cuts on
+    purpose.
+    """
+    if not things:
+        return low
+    wider = [float(part) for part in np.linspace(low, 1.0, TRIES) if part == low or is_large(part)]
+    for part in wider:
+        if all(cut_share(view, stood(part), thing, AIR) < WHOLE for thing in things):
+            return part
+    parts = [*np.linspace(low, 0.0, TRIES), *wider[1:], 1.0]
+    misses = [max(near_miss(view, stood(part), thing) for thing in things) for part in parts]
+    return float(parts[int(np.argmin(np.round(misses, 3)))])
 
 
 def near_miss(view: View, position: Array, thing: Array) -> float:
@@ -125,6 +141,17 @@ def cut_share(view: View, position: Array, thing: Array, edge: float = 1.0) -> f
 
     ``edge``: part of the picture that counts as its inside.
     """
+    inside, whole = _areas(view, position, thing, edge)
+    return 1.0 - inside / whole if whole > 0 else 0.0
+
+
+def shown_area(view: View, position: Array, thing: Array) -> float:
+    """Return the part of the picture's area that the outline of a thing (n, 3) takes, from ``position`` (3,)."""
+    return _areas(view, position, thing, 1.0)[0] / 4
+
+
+def _areas(view: View, position: Array, thing: Array, edge: float) -> tuple[float, float]:
+    """Return the areas of a thing's outline in the picture, and of all of it; that of the picture is 4."""
     u, v, w = ((thing - position) @ axes(view.azimuth, view.elevation).T).T
     half = half_field(view.lens, view.aspect)
     seen = np.stack([u / np.maximum(w, 1e-9) / half[0], v / np.maximum(w, 1e-9) / half[1]], axis=1) / edge
@@ -133,7 +160,7 @@ def cut_share(view: View, position: Array, thing: Array, edge: float = 1.0) -> f
     for axis in (0, 1):
         for side in (-1.0, 1.0):
             inside = _clipped(inside, axis, side)
-    return 1.0 - area(inside) / whole if whole > 0 else 0.0
+    return area(inside), whole
 
 
 def area(corners: Array) -> float:

@@ -54,7 +54,7 @@ class Film:
         """Motion that is shown; in space a Motion3, as :attr:`in_space` is: what both have is asked alike."""
         self.in_space = motion if isinstance(motion, Motion3) else None
         self.parts, self.shot, self.folder, self.aspect = parts, shot, folder, aspect
-        self.poses: Any = SpacePoses(motion, parts) if isinstance(motion, Motion3) else Poses(motion)
+        self.poses: Any = SpacePoses(motion) if isinstance(motion, Motion3) else Poses(motion)
         """Poses | SpacePoses, of which a pose, a path and what is carried are asked alike."""
         self.clock = Clock(motion, shot)
         refuse_unknown(shot, Names.from_motion(motion, parts))
@@ -165,14 +165,14 @@ class Film:
     @cached_property
     def arrows(self) -> Arrows:
         """The straight arrows that the shot shows."""
-        return Arrows(self.poses.time, _vectors(self.in_space or self.motion, self.shot.show), self.size)
+        return Arrows(self.poses.time, vectors_of(self.in_space or self.motion, self.shot.show), self.size)
 
     @cached_property
     def arcs(self) -> Arcs:
         """The curved ones."""
-        forces = _vectors(self.in_space or self.motion, ("forces", "reactions"))
+        forces = vectors_of(self.in_space or self.motion, ("forces", "reactions"))
         least = rounding(forces, self.size)
-        return Arcs(self.poses.time, _torques(self.in_space or self.motion, self.shot.show), self.size, least)
+        return Arcs(self.poses.time, torques_of(self.in_space or self.motion, self.shot.show), self.size, least)
 
     @cached_property
     def drawn(self) -> list[Any]:
@@ -357,9 +357,11 @@ class Film:
         return Writing(lines=self._lines, legend=legend, card=card, on_bright=not self.look.dark)
 
 
-def _vectors(motion: AnyMotion, show: Sequence[Quantity]) -> list[Vector]:
+def vectors_of(motion: AnyMotion, show: Sequence[Quantity]) -> list[Vector]:
+    """Return all straight arrows that ``show`` asks for, in the plane or in space."""
     return vectors_in_space(motion, show) if isinstance(motion, Motion3) else vectors(motion, show)
 
 
-def _torques(motion: AnyMotion, show: Sequence[Quantity]) -> list[Torque]:
+def torques_of(motion: AnyMotion, show: Sequence[Quantity]) -> list[Torque]:
+    """Return all curved arrows that ``show`` asks for, in the plane or in space."""
     return torques_in_space(motion, show) if isinstance(motion, Motion3) else torques(motion, show)

@@ -228,9 +228,14 @@ class Heights:
         """The highest piece that is ever under each label."""
 
     def arrow(self, bodies: Iterable[str], x: float, y: float) -> float:
-        """Return the height on the highest piece where it begins at the start; else over all its bodies."""
+        """Return the height on the highest piece where it begins at the start; else over all its bodies.
+
+        Ground counts where nothing else is: an arrow on a bridge over a pin would begin beside it in the picture.
+        """
         bodies, start = list(bodies), self.clock.moment(0)
-        heights = [top for body in bodies for top in self.space.tops_at(body, x, y, start)]
+        under = {body: self.space.tops_at(body, x, y, start) for body in bodies}
+        heights = [top for body, tops_there in under.items() if body != "ground" for top in tops_there]
+        heights = heights or under.get("ground", [])
         heights = heights or [top for body in bodies for top in tops(self.parts, body)]
         return max(heights, default=float(self.space.moving[:, 2].max())) + OVER
 

@@ -77,11 +77,12 @@ def read_film(out: Out, show: str = "", aspect: float = ASPECT) -> Film:
     from render.film.film import Film
     from shared.contract import Motion, read_any_motion, read_parts
     from shared.contract.geometry import with_rods
+    from shared.contract.links import with_links
     from shared.contract.shot import read_shot, shown
 
     refuse_missing(out)
     shot = shown(read_shot(out.shot), show)
     parts = read_parts(out.parts, out.name)
     motion = read_any_motion(out.motion, out.name)
-    motion = with_rods(motion, parts) if isinstance(motion, Motion) else motion
+    motion = with_rods(motion, parts) if isinstance(motion, Motion) else with_links(motion, parts)
     return Film(motion, parts, shot, out.parts_folder, aspect)

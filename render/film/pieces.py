@@ -66,8 +66,7 @@ def refuse_mismatch(motion: AnyMotion, parts: Parts, folder: Path) -> None:
     name = motion.mechanism
     if parts.mechanism != name:
         raise UserError(f"parts.json is of {parts.mechanism}, data.json of {name}; make both again")
-    known_links = {name for name, body in parts.bodies.items() if body.link and body.link.joint in motion.joints}
-    unknown = [body for body in parts.bodies if body not in {*motion.bodies, *known_links, "ground"}]
+    unknown = [body for body in parts.bodies if body not in {*motion.bodies, "ground"}]
     if unknown:
         raise UserError(
             f"{name}: parts.json has solids for {', '.join(unknown)}, which do not move in data.json; "

@@ -1,8 +1,7 @@
 """Poses, vectors and springs of a mechanism in space, at any moment.
 
-Between rows of data.json places follow quintics, as in the plane, and so do the four entries of the quaternion, whose
-rates are q' = w q / 2 and q'' = (w' q + w q') / 2 with the angular velocity w in the world; the result has length 1.
-So all rows are met with their rates, and the film needs no second kind of interpolation.
+Between rows of data.json places follow quintics, as in the plane, and so do the four entries of the quaternion; the
+result has length 1. So all rows are met with their rates, and the film needs no second kind of interpolation.
 """
 
 from __future__ import annotations
@@ -17,68 +16,27 @@ from render.film.poses import Moment, Quintic
 from render.film.scene import Point, Pose, TubeSpec
 from render.film.tubes.stretched import BROAD, COIL, Path, coil_tubes
 from render.film.vectors import Torque, Vector
-from shared.contract import Motion3, Parts
-from shared.contract.parts import BodyParts
+from shared.contract import Motion3
+from shared.contract.quaternions import matrices
 from shared.contract.shot import Label, Quantity
-from shared.contract.space import BodyMotion3, ForceMotion3, JointMotion3, Marker3, columns
+from shared.contract.space import ForceMotion3, JointMotion3, Marker3, columns
 
 Array = NDArray[np.float64]
 LABEL = 0.03
 """Height of a label over its joint, as a part of the size of the swept motion."""
 
 
-def product(a: Array, b: Array) -> Array:
-    """Return products (..., 4) of quaternions (w, x, y, z): first the rotation b, then a."""
-    aw, av, bw, bv = a[..., :1], a[..., 1:], b[..., :1], b[..., 1:]
-    vector = aw * bv + bw * av + np.cross(av, bv)
-    return np.concatenate([aw * bw - (av * bv).sum(axis=-1, keepdims=True), vector], axis=-1)
-
-
-def matrices(q: Array) -> Array:
-    """Return rotations (..., 3, 3) of unit quaternions (..., 4), from body to world."""
-    w, x, y, z = np.moveaxis(q, -1, 0)
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
-
-
-def quaternion_of(rotation: Array) -> Array:
-    """Return unit quaternions (n, 4) of rotations (n, 3, 3), their signs going on from one to the next."""
-    m = rotation
-    trace = m[:, 0, 0] + m[:, 1, 1] + m[:, 2, 2]
-    squares = np.stack([trace, m[:, 0, 0], m[:, 1, 1], m[:, 2, 2]], axis=1)
-    out = np.zeros((len(m), 4))
-    for row, k in enumerate(squares.argmax(axis=1)):
-        r = m[row]
-        if k == 0:
-            out[row] = [1 + trace[row], r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]]
-            continue
-        i, j, n = k - 1, k % 3, (k + 1) % 3
-        out[row, 0], out[row, 1 + i] = r[n, j] - r[j, n], 1 + 2 * r[i, i] - trace[row]
-        out[row, 1 + j], out[row, 1 + n] = r[j, i] + r[i, j], r[n, i] + r[i, n]
-    out /= np.linalg.norm(out, axis=1, keepdims=True)
-    flips = np.where((out[1:] * out[:-1]).sum(axis=1) < 0.0, -1.0, 1.0)
-    return out * np.cumprod(np.concatenate([[1.0], flips]))[:, None]
-
-
 class SpacePoses:
-    """Poses of every body, massless link and point of a motion in space, at any moment."""
+    """Poses of every body and point of a motion in space, at any moment."""
 
-    def __init__(self, motion: Motion3, parts: Parts | None = None) -> None:
+    def __init__(self, motion: Motion3) -> None:
         self.motion = motion
         self.time = np.asarray(motion.time)
         self._quintic = Quintic(self.time)
-        self._links = {} if parts is None else {name: body for name, body in parts.bodies.items() if body.link}
-        self._rates = {name: _rates(body) for name, body in motion.bodies.items()}
+        self._rates = {name: body.changes for name, body in motion.bodies.items()}
 
     def over(self, name: str, times: Array) -> tuple[Array, Array]:
-        """Return places (n, 3) and quaternions (n, 4) of a body or link at times of the first period."""
-        if name in self._links:
-            place, turned = self._link(self._links[name], times)
-            return place, quaternion_of(turned)
+        """Return places (n, 3) and quaternions (n, 4) of a body at times of the first period."""
         if name not in self._rates:
             return np.zeros((len(times), 3)), np.tile([1.0, 0.0, 0.0, 0.0], (len(times), 1))
         weights = self._quintic.weights_at(times)
@@ -133,34 +91,9 @@ class SpacePoses:
         turned = matrices(q)
         return place + turned @ np.array(marker.place), turned @ np.array(marker.axis)
 
-    def _link(self, body: BodyParts, times: Array) -> tuple[Array, Array]:
-        """Return places (n, 3) and rotations (n, 3, 3) of the massless link of a joint."""
-        assert body.link
-        joint = self.motion.joints[body.link.joint]
-        (first, axis), (second, other) = (
-            self._marker(name, marker, times) for name, marker in zip(joint.bodies, joint.markers, strict=True)
-        )
-        if joint.kind == "universal":
-            return first, np.stack([axis, other, np.cross(axis, other)], axis=2)
-        x = (second - first) / np.linalg.norm(second - first, axis=1, keepdims=True)
-        near = matrices(self.over(body.link.body, times)[1]) @ np.array(body.link.z)
-        z = near - (near * x).sum(axis=1, keepdims=True) * x
-        z /= np.maximum(np.linalg.norm(z, axis=1, keepdims=True), 1e-12)
-        return first, np.stack([x, np.cross(z, x), z], axis=2)
-
     def _columns(self, weights: Quintic.Weights, series: tuple[Array, Array, Array]) -> Array:
         value, rate, bend = series
         return np.stack([weights.series(value[:, k], rate[:, k], bend[:, k]) for k in range(value.shape[1])], axis=1)
-
-
-def _rates(body: BodyMotion3) -> tuple[tuple[Array, Array, Array], tuple[Array, Array, Array]]:
-    """Return place and quaternion of a body, each with its first and second derivative."""
-    q = body.quaternion
-    zero = np.zeros((len(q), 1))
-    w, alpha = (np.hstack([zero, columns(body, *(f"{name}{axis}" for axis in "xyz"))]) for name in ("w", "alpha"))
-    rate = 0.5 * product(w, q)
-    bend = 0.5 * (product(alpha, q) + product(w, rate))
-    return (body.place, columns(body, "vx", "vy", "vz"), columns(body, "ax", "ay", "az")), (q, rate, bend)
 
 
 # What floats over the bodies: labels; arrows and trails lie where they act.

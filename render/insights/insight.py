@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -66,11 +66,15 @@ class Insight:
     telling: float = 0.0
     """Rank, 0 .. 1: see ranking.py."""
 
-    def sentence(self, language: str = "en") -> str:
-        """Return the sentence, which begins with a capital and ends with a full stop."""
-        words = sentences(language)
-        text = words[self.template].format(**{key: said(value, words) for key, value in self.values.items()})
-        return text[:1].upper() + text[1:]
+    def sentence(self, language: str = "en", say: Callable[[Value, Mapping[str, str]], str] | None = None) -> str:
+        """Return the sentence, which begins with a capital and ends with a full stop; ``say`` writes its values."""
+        words, say = sentences(language), say or said
+        return capital(words[self.template].format(**{key: say(value, words) for key, value in self.values.items()}))
+
+
+def capital(text: str) -> str:
+    """Return a text whose first letter is a capital, also one behind a sign."""
+    return re.sub(r"^\W*[^\W\d_]", lambda begin: begin[0].upper(), text, count=1)
 
 
 @cache
@@ -113,12 +117,7 @@ def _number(amount: Amount, words: Mapping[str, str]) -> str:
         return words["|twice"] if abs(value - 2) < 1e-3 else words["|times"].format(factor=figures(value, digits))
     if unit == "count":
         return words.get(f"|{round(value)}", f"{round(value)}")
-    return in_words(value, unit, digits)
-
-
-def in_words(value: float, unit: str, digits: int = 3) -> str:
-    """Return a number with its unit as a sentence has it: ``38.3 mN·m``, which no one reads as metres."""
-    return written(value, unit, digits).replace("N m", "N·m")
+    return written(value, unit, digits)
 
 
 def _name(sort: Sort, name: str, words: Mapping[str, str]) -> str:

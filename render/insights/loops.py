@@ -89,6 +89,22 @@ class Loop:
         crank, coupler, follower, ground = (float(np.hypot(*(self.pins[0, j] - self.pins[0, i]))) for i, j in ends)
         return crank, coupler, follower, ground
 
+    @property
+    def longest_crank(self) -> tuple[float, str]:
+        """Return the length up to which the crank turns round (m), and its end: ``""``, ``_folded``, ``_slides``.
+
+        The others would be stretched into one line there, folded, or the coupler square to the guide (Grashof). It is
+        infinite where the crank is longer than the ground between its pins: there it is no crank but a drag link.
+        """
+        a, b, c, d = self.lengths
+        if self.slides:
+            place, normal = self.pins[0, 0] - self.pins[0, 2], self.pins[0, 3] - self.pins[0, 2]
+            return b - abs(float(place @ normal)) / float(np.hypot(*normal)), "_slides"
+        if a > d:
+            return float("inf"), ""
+        stretched, folded = b + c - d, d - abs(b - c)
+        return (stretched, "") if stretched <= folded else (folded, "_folded")
+
 
 def loops(motion: Motion) -> list[Loop]:
     """Return all loops of a mechanism whose crank a driver or forces turn round and round.

@@ -36,7 +36,7 @@ WEIGHTS = {
     "crossing": 0.6, "no_effort": 0.7, "energy_kept": 0.6, "stroke": 0.55, "period": 0.5, "even_return": 0.4,
     "cable": 0.8, "rhythm": 0.8, "returns": 0.8, "climbs": 0.8,
     "difference": 0.9, "slide": 0.8, "cosine": 0.9, "halves": 0.8,
-    "reach": 0.4,
+    "reach": 0.4, "limit": 0.4,
 }  # fmt: skip
 """How much a kind explains, 0 .. 1."""
 LEAST = 0.06

@@ -8,11 +8,12 @@ import numpy as np
 
 from render.insights.insight import Insight
 from render.insights.kinds.loads import LEVEL, first_peak
+from render.insights.meeting import meets, place_of
 from render.insights.ranking import insights
 from render.insights.seen import Array, Seen, amount, insight, joint, load, point
 from render.insights.seen import body as body_named
 from render.magnitudes import force_scale
-from shared.contract import BodyMotion, Motion
+from shared.contract import BodyMotion, JointMotion, Motion
 
 EDGE = 0.02
 """Part of a motion without a period at its start: a stop there has nothing before it, and comes after others."""
@@ -90,22 +91,47 @@ def _speeds(motion: Motion) -> Iterator[Insight]:
 
 
 def fastest(motion: Motion) -> tuple[str, float]:
-    """Return the fastest traced point, joint or body (by its centre of mass), and its speed (m/s)."""
+    """Return the fastest traced point, pin or body (by its fastest place known), and its speed (m/s)."""
     most = {name: float(size.max()) for name, size in speeds(motion).items()}
     name = max(most, key=lambda each: most[each])
     return name, most[name]
 
 
 def speeds(motion: Motion) -> dict[str, Array]:
-    """Return the speeds of centres of mass, of second markers of joints, and of points, (T,) m/s; points go first."""
+    """Return the speeds (T,) m/s of bodies, of points, and of second markers of pins and guides.
+
+    A body counts by its centre of mass, by places where others meet it, and by the rims of its wheels.
+    """
     seen = Seen(motion)
     out = {name: np.hypot(centre.vx, centre.vy) for name, centre in seen.centres.items()}
+    for each in motion.joints.values():
+        own = [(name, motion.bodies[name]) for name in each.bodies if name in motion.bodies]
+        if each.pair is None and each.acts is not None and meets(each):
+            for name, body in own:
+                out[name] = np.maximum(out[name], _speed_at(body, *place_of(each)))
+        for name, speed in _rims(motion, each):
+            out[name] = np.maximum(out[name], speed)
     out |= {name: np.hypot(each.vx, each.vy) for name, each in motion.points.items()}
     for name, each in motion.joints.items():
         own = motion.bodies.get(each.bodies[1])
-        if own is not None and name not in out:
+        if own is not None and each.pair is not None and name not in out:
             out[name] = _speed_at(own, np.asarray(each.x), np.asarray(each.y))
     return out
+
+
+def _rims(motion: Motion, joint: JointMotion) -> Iterator[tuple[str, Array]]:
+    """Yield the bodies of a joint that are wheels about their markers, and the largest speeds on their rims."""
+    shape = joint.shape
+    for name, marker, radius in (
+        ()
+        if shape is None
+        else zip(shape.bodies, shape.markers, (shape.radius_first, shape.radius_second), strict=True)
+    ):
+        if radius is not None and name in motion.bodies:
+            body = motion.bodies[name]
+            turned = (marker[0] + 1j * marker[1]) * np.exp(1j * np.asarray(body.theta))
+            centre = _speed_at(body, turned.real + body.x, turned.imag + body.y)
+            yield name, centre + radius * np.abs(body.omega)
 
 
 def _speed_at(own: BodyMotion, x: Array, y: Array) -> Array:

@@ -64,7 +64,7 @@ def report(motion: AnyMotion, parts: Parts | None, clearance: Clearance | None, 
     lines += [said, ""] if said else []
     if isinstance(motion, Motion3):
         lines += motion_in_space(motion)
-        chapters = sections_in_space(motion, parts)
+        chapters = [*sections_in_space(motion, parts), ("Clearance", sections.clearance_section(clearance))]
     else:
         lines += sections.motion_section(motion)
         chapters = _planar_sections(motion, parts, clearance)

@@ -9,7 +9,7 @@ import numpy as np
 
 from render.insights.loops import loops
 from render.insights.stops import fastest
-from render.magnitudes import effort_floor
+from render.magnitudes import effort_floor, travels
 from render.report.space import facts_in_space
 from render.report.written import Amounts, counted, degrees, moment, speed, written
 from shared.contract import AnyMotion, Motion, Motion3, Parts, read_motion, read_parts
@@ -26,13 +26,13 @@ def facts(motion: AnyMotion, parts: Parts | None, clearance: Clearance | None) -
 
     Speed is that of the fastest place; effort and reaction are the largest."""
     if isinstance(motion, Motion3):
-        return facts_in_space(motion, parts)
+        return facts_in_space(motion, parts) + _apart(clearance)
     span, amount = motion.time[-1] - motion.time[0], Amounts(motion)
     out = [f"{counted(motion.diagnostics.dof, 'degree')} of freedom"]
     out.append(f"repeats after {moment(motion.period)}" if motion.period else f"{moment(span)} of motion")
     name, most = fastest(motion)
     if amount.without_noise(most, "m/s"):
-        out.append(f"{name} reaches {speed(most)}")
+        out.append(f"{name} reaches {speed(most, travels(motion, name))}")
     forces = {name: float(np.hypot(joint.fx, joint.fy).max()) for name, joint in motion.joints.items()}
     largest = max(forces.values(), default=0.0)
     for name, driver in motion.drivers.items():
@@ -49,9 +49,13 @@ def facts(motion: AnyMotion, parts: Parts | None, clearance: Clearance | None) -
     if parts is not None:
         pieces = sum(len(body.pieces) for body in parts.bodies.values())
         out.append(f"{written(moving, 'kg')} moving, {counted(pieces, 'piece')}")
-    if clearance is not None and clearance.pairs:
-        out.append(f"parts stay {written(min(pair.gap for pair in clearance.pairs), 'm')} apart")
-    return out
+    return out + _apart(clearance)
+
+
+def _apart(clearance: Clearance | None) -> list[str]:
+    """Return the least gap in words; empty without a proof."""
+    pairs = clearance.pairs if clearance is not None else []
+    return [f"parts stay {written(min(pair.gap for pair in pairs), 'm')} apart"] if pairs else []
 
 
 def _efforts(motion: Motion) -> list[tuple[str, str]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from render.magnitudes import crank_of, driven_bodies, shaking
+from render.magnitudes import crank_of, driven_bodies, shaking, travels
 from render.report.written import Amounts, counted, first_peak, listed, moment, speed, table, turning, written
 from shared.contract import Motion, Parts
 from shared.contract.clearance import Clearance
@@ -62,12 +62,14 @@ def speed_section(motion: Motion) -> list[str]:
         k = first_peak(v)
         spins = turning(spin) if amount.without_noise(spin, "rad/s") else "0"
         moves = amount.without_noise(float(v[k]), "m/s")
-        shown = (speed(float(v[k])), moment(time[k]), _acceleration(a, amount)) if moves else ("0", "", "0")
+        fast = speed(float(v[k]), travels(motion, name))
+        shown = (fast, moment(time[k]), _acceleration(a, amount)) if moves else ("0", "", "0")
         rows.append([name, *shown, spins])
     for name, point in motion.points.items():
         v, a = np.hypot(point.vx, point.vy), np.hypot(point.ax, point.ay)
         k = first_peak(v)
-        rows.append([f"point {name}", speed(float(v[k])), moment(time[k]), _acceleration(a, amount), ""])
+        fast = speed(float(v[k]), travels(motion, name))
+        rows.append([f"point {name}", fast, moment(time[k]), _acceleration(a, amount), ""])
     lines = ["Bodies by their centres of mass, and traced points.", ""]
     lines += table(["", "peak speed", "at", "peak acceleration", "peak turning"], rows)
     return lines + _last_turn(motion)

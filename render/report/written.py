@@ -1,4 +1,4 @@
-"""Words of a report: speeds with km/h, turns with rpm, degrees, moments, lists, tables of Markdown."""
+"""Words of a report: speeds, turns with rpm, degrees, moments, lists, tables of Markdown."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ class Amounts:
         return 0.0 if abs(value) <= self.floors.get(unit, 0.0) else value
 
 
-def speed(value: float) -> str:
-    """Return ``1.05 m/s (3.77 km/h)``."""
-    return f"{written(value, 'm/s')} ({figures(3.6 * value, 3)} km/h)"
+def speed(value: float, travels: bool = False) -> str:
+    """Return ``1.05 m/s``, of what travels ``1.05 m/s (3.77 km/h)``."""
+    return f"{written(value, 'm/s')} ({figures(3.6 * value, 3)} km/h)" if travels else written(value, "m/s")
 
 
 def turning(value: float) -> str:

@@ -39,6 +39,24 @@ def sound_of(film: Film, time_map: TimeMap | None = None) -> Array:
     return np.take(ring, np.arange(count) % ring.shape[1], axis=1)
 
 
+BED, FADE = -9.0, 0.3
+"""dB: level of the machine under pictures whose time stands, beside that in motion; seconds in which it comes."""
+
+
+def sound_of_story(film: Film, time_map: TimeMap) -> Array:
+    """Return (2, n) the sound of a story at 48 kHz, 1 being full scale.
+
+    Where its time stands the machine is heard from afar, as it runs in its film, so that no silence breaks off.
+    """
+    wave, ring = sound_of(film, time_map), sound_of(film)
+    count, step = wave.shape[1], RATE // 100
+    stands = (time_map.moments_at(np.arange(0, count, step) / RATE)[1] == 0.0).astype(float)
+    bell = np.hanning(round(FADE * 100) + 2)[1:-1]
+    stands = np.convolve(np.pad(stands, len(bell) // 2, mode="edge"), bell / bell.sum(), mode="valid")
+    level = 10 ** (BED / 20) * np.interp(np.arange(count), step * np.arange(len(stands)), stands)
+    return wave + level * np.take(ring, np.arange(count) % ring.shape[1], axis=1)
+
+
 def stems_of(setting: Setting) -> dict[str, Spectrum]:
     """Return the spectrum (2, N // 2 + 1) of each source of a machine in a showing (Pa at 1 m)."""
     desk = Desk(setting)

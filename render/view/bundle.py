@@ -42,9 +42,9 @@ class Bundle(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     licences: str
 
 
-def bundle() -> Bundle:
-    """Return the bundle of the sources as they are. Raises UserError where it cannot be made."""
-    name = f"{sources_key()[:24]}.json"
+def bundle(entry: str = "main") -> Bundle:
+    """Return the bundle of page/src/<entry>.js as the sources are. Raises UserError where it cannot be made."""
+    name = f"{entry}-{sources_key()[:24]}.json"
     for folder in _folders():
         with suppress(UserError):  # missing, or damaged: it is made again
             return jsonfile.read(folder / name, Bundle)
@@ -52,7 +52,7 @@ def bundle() -> Bundle:
     with tempfile.TemporaryDirectory() as folder:
         made = Path(folder) / "page.js"
         command = [
-            *(str(part) for part in (node(), modules / "esbuild/bin/esbuild", PAGE / "src/main.js")),
+            *(str(part) for part in (node(), modules / "esbuild/bin/esbuild", PAGE / f"src/{entry}.js")),
             *("--bundle", "--minify", "--format=iife", "--target=es2022,safari16.4", "--legal-comments=none"),
             *("--charset=utf8", "--log-level=warning", f"--alias:carriers={carriers()}", f"--outfile={made}"),
         ]

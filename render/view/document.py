@@ -48,6 +48,13 @@ def encode(payload: dict[str, Any], compress: bool = True) -> bytes:
     return zlib.compress(content, 9) if compress else content
 
 
+def header_of(content: bytes) -> dict[str, Any]:
+    """Return what compressed bytes say without the numbers of their arrays."""
+    plain = zlib.decompress(content)
+    (length,) = struct.unpack_from("<I", plain, 8)
+    return json.loads(plain[12 : 12 + length])
+
+
 def _planes(values: np.ndarray) -> bytes:
     flat = np.ascontiguousarray(values, values.dtype.newbyteorder("<")).reshape(-1)
     return flat.view(np.uint8).reshape(-1, values.itemsize).T.tobytes()

@@ -11,14 +11,16 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from render.film.arrows import FULL, FULL_TURN, SIGNAL, Arcs, Arrows
-from render.film.film import Film
+from render.film.film import Film, torques_of, vectors_of
 from render.film.heights import Heights
 from render.film.poses import Moment
 from render.film.solids import read_triangles
-from render.film.vectors import LONGEST, TINY, Scale, rounding, torques, vectors
-from shared.contract import Motion
+from render.film.space import SpaceHeights, Turning
+from render.film.vectors import LONGEST, TINY, Scale, rounding
+from shared.contract import AnyMotion
 from shared.contract.clearance import Clearance
 from shared.contract.quantity import written
+from shared.contract.quaternions import matrices
 from shared.contract.shot import Quantity
 
 # Where two pieces come nearest: the middle of the gap, from points all over both surfaces.
@@ -53,16 +55,16 @@ def gap_places(film: Film, clearance: Clearance) -> list[GapPlace | None]:
         if number >= MOST or None in pieces or pair.proof == "layers":
             out.append(None)
             continue
-        at = Moment(float(film.poses.time[0]) if pair.time is None else pair.time, 0)
-        poses = [film.poses.body(body, at) for body in pair.bodies]
+        frames = [_frame(film, body, film.poses.time[0] if pair.time is None else pair.time) for body in pair.bodies]
         surfaces = [
-            _placed(read_triangles(film.folder / piece.stl), pose)
-            for pose, piece in zip(poses, pieces, strict=True)
+            read_triangles(film.folder / piece.stl) @ turned.T + place
+            for (place, turned), piece in zip(frames, pieces, strict=True)
             if piece is not None
         ]
-        x, y, z = (float(value) for value in middle(*surfaces))
+        at = middle(*surfaces)
         if pair.time is None:
-            x, y = _seen(x, y, poses[1])
+            at = (at - frames[1][0]) @ frames[1][1]
+        x, y, z = (float(value) for value in at)
         out.append(GapPlace((x, y, z), pair.bodies[1] if pair.time is None else None))
     return out
 
@@ -101,17 +103,14 @@ def _points(triangles: Array, apart: float) -> Array:
     return np.concatenate(out)
 
 
-def _placed(triangles: Array, pose: tuple[float, float, float]) -> Array:
-    x, y, theta = pose
+def _frame(film: Film, body: str, time: float) -> tuple[Array, Array]:
+    """Return the place (3,) and the rotation (3, 3) of a body at a time."""
+    if film.in_space is not None:
+        place, q = film.poses.over(body, np.array([time]))
+        return place[0], matrices(q[0])
+    x, y, theta = film.poses.body(body, Moment(float(time), 0))
     c, s = math.cos(theta), math.sin(theta)
-    turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-    return triangles @ turn + np.array([x, y, 0.0])
-
-
-def _seen(x: float, y: float, pose: tuple[float, float, float]) -> tuple[float, float]:
-    """Return a place of the world in a body's frame."""
-    u, v, c, s = x - pose[0], y - pose[1], math.cos(pose[2]), math.sin(pose[2])
-    return c * u + s * v, c * v - s * u
+    return np.array([x, y, 0.0]), np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
 # Arrows, arcs and clearances of the page: the same ones and the same scales as in the film.
@@ -129,12 +128,12 @@ PAIRS = 60
 """Number of pairs of the clearance, at most."""
 
 
-def arrows_of(motion: Motion, size: float, heights: Heights | None = None) -> dict[str, Any]:
+def arrows_of(motion: AnyMotion, size: float, heights: Heights | SpaceHeights | None = None) -> dict[str, Any]:
     """Return straight arrows of all quantities.
 
     ``size`` (m) is that of the machine, ``heights`` where it has parts.
     """
-    arrows = Arrows(np.asarray(motion.time), vectors(motion, ALL), size)
+    arrows = Arrows(np.asarray(motion.time), vectors_of(motion, ALL), size)
     return {
         "full": FULL * size,
         "longest": LONGEST,
@@ -156,10 +155,10 @@ def arrows_of(motion: Motion, size: float, heights: Heights | None = None) -> di
     }
 
 
-def arcs_of(motion: Motion, size: float, heights: Heights | None = None) -> dict[str, Any]:
+def arcs_of(motion: AnyMotion, size: float, heights: Heights | SpaceHeights | None = None) -> dict[str, Any]:
     """Return curved arrows: torques of joints, drivers, springs, loads."""
-    least = rounding(vectors(motion, ("forces", "reactions")), size)
-    arcs = Arcs(np.asarray(motion.time), torques(motion, ALL), size, least)
+    least = rounding(vectors_of(motion, ("forces", "reactions")), size)
+    arcs = Arcs(np.asarray(motion.time), torques_of(motion, ALL), size, least)
     return {
         "full": FULL_TURN,
         "scale": _scale(arcs.scale) if arcs.scale else None,
@@ -171,6 +170,7 @@ def arcs_of(motion: Motion, size: float, heights: Heights | None = None) -> dict
                 "bodies": list(torque.bodies),
                 "place": torque.place.astype(np.float32),
                 "value": torque.value.astype(np.float32),
+                **({"about": torque.about.astype(np.float32)} if isinstance(torque, Turning) else {}),
                 "radius": spec.radius,
                 "z": heights.arrow(torque.bodies, *map(float, torque.place[0])) if heights else 0.0,
             }

@@ -7,6 +7,7 @@ import types
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import msgspec
 import numpy as np
 
 from render.film.clock import Clock
@@ -19,8 +20,10 @@ from render.insights.loops import marks
 from render.magnitudes import floor_of, floors, shaking, without_noise
 from render.view.loads import arcs_of, arrows_of, clearance_of
 from render.view.solid import with_parts
-from shared.contract import JointMotion, Motion, read_motion, read_parts
+from render.view.space import things_in_space
+from shared.contract import AnyMotion, JointMotion, Motion, read_any_motion, read_parts
 from shared.contract.geometry import with_rods
+from shared.contract.links import with_links
 from shared.contract.shot import Shot, read_shot
 from shared.contract.skeleton import Carrier, Moving, Stroke, read_skeleton
 from shared.stage.errors import UserError
@@ -30,6 +33,8 @@ from shared.stage.paths import Out
 # The content of the page, as one dict of plain values and arrays; document.py makes bytes of it.
 #
 # SI units and radians; names are those of data.json. Arrays are float32 unless said; T is the number of times.
+#
+# In space it is that of space.py here and there.
 #
 #     mechanism, title        its name, and in words
 #     analysis, gravity       "sweep" or "simulation"; [x, y] (m/s^2)
@@ -67,7 +72,7 @@ EFFORTS = ("effort", "normal", "friction")
 """Series in the unit of the effort of their driver, force or contact."""
 
 
-def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bool = True) -> dict[str, Any]:
+def payload(motion: AnyMotion, moving: Moving, shot: Shot | None = None, arrows: bool = True) -> dict[str, Any]:
     """Return everything but the parts; arrows and arcs only if ``arrows``.
 
     ``motion`` may have more bodies than the skeleton: rods of the parts.
@@ -75,7 +80,7 @@ def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bo
     shot = shot or Shot()
     clock = Clock(motion, shot)
     size = max(float(np.ptp([moving.low, moving.high], axis=0).max()), 10 * moving.unit)
-    quiet = floors(motion)
+    quiet = floors(motion) if isinstance(motion, Motion) else {}
     return {
         "mechanism": motion.mechanism,
         "title": title_of(motion.mechanism),
@@ -91,6 +96,30 @@ def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bo
             "fps": shot.fps,
             "turns": clock.turns,
         },
+        **(_things(motion, quiet) if isinstance(motion, Motion) else things_in_space(motion)),
+        "energy": _series(motion.energy, "kinetic", "potential", "work", "audit", quiet=quiet),
+        "margin": floats(motion.diagnostics.singularity_margin),
+        "insights": [],
+        "skeleton": skeleton(moving),
+        **({"arrows": arrows_of(motion, size), "arcs": arcs_of(motion, size)} if arrows else {}),
+        "trails": [
+            {
+                "point": trail.point,
+                "colour": list(colour_of(trail, False)) if trail.colour or trail.ink else None,
+                "tail": trail.tail,
+                "radius": trail.radius * size,
+                "z": 0.0,
+            }
+            for trail in trails_of(motion, shot)
+        ],
+        "clearance": None,
+        "solid": None,
+    }
+
+
+def _things(motion: Motion, quiet: Mapping[str, float]) -> dict[str, Any]:
+    """Return bodies, joints and all else that a motion in the plane has of its own."""
+    return {
         "bodies": {name: _body(body, quiet) for name, body in motion.bodies.items()},
         "joints": {name: _joint(motion, joint, quiet) for name, joint in motion.joints.items()},
         "drivers": {name: _driver(driver, quiet) for name, driver in motion.drivers.items()},
@@ -111,27 +140,10 @@ def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bo
         },
         "couple": couple_of(motion),
         "frame": frame_of(motion),
-        "energy": _series(motion.energy, "kinetic", "potential", "work", "audit", quiet=quiet),
-        "margin": floats(motion.diagnostics.singularity_margin),
         "marks": [
             {"time": time, "words": words, "kind": "dead point" if words.endswith("turns back") else "event"}
             for time, words in marks(motion)
         ],
-        "insights": [],
-        "skeleton": skeleton(moving),
-        **({"arrows": arrows_of(motion, size), "arcs": arcs_of(motion, size)} if arrows else {}),
-        "trails": [
-            {
-                "point": trail.point,
-                "colour": list(colour_of(trail, False)) if trail.colour or trail.ink else None,
-                "tail": trail.tail,
-                "radius": trail.radius * size,
-                "z": 0.0,
-            }
-            for trail in trails_of(motion, shot)
-        ],
-        "clearance": None,
-        "solid": None,
     }
 
 
@@ -246,7 +258,7 @@ def _force(force: Any, quiet: Mapping[str, float]) -> dict[str, Any]:
 
 
 def _carrier(carrier: Carrier) -> dict[str, Any]:
-    return {"kind": carrier.kind, "ends": [{"body": end.body, "x": end.x, "y": end.y} for end in carrier.ends]}
+    return {"kind": carrier.kind, "ends": [msgspec.to_builtins(end) for end in carrier.ends]}
 
 
 def _stroke(stroke: Stroke) -> dict[str, Any]:
@@ -268,7 +280,7 @@ def _stroke(stroke: Stroke) -> dict[str, Any]:
 
 def read_payload(out: Out) -> dict[str, Any]:
     """Return the whole payload of a mechanism. Raises UserError for files that do not fit together."""
-    motion, skeleton = read_motion(out.motion, out.name), read_skeleton(out.skeleton)
+    motion, skeleton = read_any_motion(out.motion, out.name), read_skeleton(out.skeleton)
     if skeleton.moving is None:
         raise UserError(f"{out.name}: {out.skeleton} is of an earlier version; run {to_run('solve', out.name)} again")
     if skeleton.provenance.inputs != motion.provenance.inputs:
@@ -277,9 +289,12 @@ def read_payload(out: Out) -> dict[str, Any]:
         )
     shot = read_shot(out.shot) if out.shot.is_file() else Shot()
     parts = read_parts(out.parts, out.name) if out.parts.is_file() else None
-    solved, motion = motion, with_rods(motion, parts) if parts else motion
+    solved = motion
+    if parts is not None:
+        motion = with_rods(motion, parts) if isinstance(motion, Motion) else with_links(motion, parts)
     page = payload(motion, skeleton.moving, shot)
-    page["insights"] = [{"time": each.start, "words": each.sentence()} for each in insights(solved)[:INSIGHTS]]
+    if isinstance(solved, Motion):
+        page["insights"] = [{"time": each.start, "words": each.sentence()} for each in insights(solved)[:INSIGHTS]]
     film = Film(motion, parts, shot, out.parts_folder) if parts else None
     if film is not None:
         page = with_parts(page, film)

@@ -173,14 +173,14 @@ COAT = {"anodised": 0.18, "plastic": 0.25, "wood": 0.1}
 
 def with_parts(payload: dict[str, Any], film: Film) -> dict[str, Any]:
     """Return the payload of the film's motion with its parts, and arrows and trails at their heights."""
-    size, heights = film.space.size, film.trails.heights
+    size, heights, motion = film.space.size, film.trails.heights, film.in_space or film.motion
     trails = [
         record | {"z": heights[trail.point], "radius": trail.radius * size}
         for record, trail in zip(payload["trails"], film.trails.trails, strict=True)
     ]
     return payload | {
-        "arrows": arrows_of(film.motion, size, film.heights),
-        "arcs": arcs_of(film.motion, size, film.heights),
+        "arrows": arrows_of(motion, size, film.heights),
+        "arcs": arcs_of(motion, size, film.heights),
         "trails": trails,
         "solid": solid(film),
     }
@@ -193,7 +193,8 @@ def solid(film: Film) -> dict[str, Any]:
     solids = list(shapes([Path(spec.stl) for spec in specs]))
     meshes = Meshes(max(float(np.ptp(positions, axis=0).max()) for positions, _, _ in solids))
     surfaces: dict[SurfaceSpec, int] = {}
-    lifts = {(lift.body, lift.piece): lift.distance for lift in exploded(film.parts, film.size)}
+    apart = exploded(film.parts, film.size) if film.in_space is None else []
+    lifts = {(lift.body, lift.piece): lift.distance for lift in apart}
     turned = {(roller.body, roller.piece): roller for roller in film.rollers.found}
     pieces = []
     for spec, shape in zip(specs, solids, strict=True):
@@ -228,7 +229,7 @@ def solid(film: Film) -> dict[str, Any]:
         "pieces": pieces,
         "heights": _heights(film),
         "still": [list(plane) for plane in film.cut],
-        "tubes": np.frombuffer(tubes(film), np.uint8) if film.drawn else None,
+        "tubes": np.frombuffer(tubes(film), np.uint8) if film.drawn and film.in_space is None else None,
     }
 
 
@@ -282,6 +283,8 @@ def _camera(film: Film) -> dict[str, Any]:
 
 
 def _heights(film: Film) -> dict[str, dict[str, float]]:
+    if film.in_space is not None:
+        return {"joints": {}, "points": {}, "bodies": {}}
     start = Moment(float(film.poses.time[0]), 0)
     tops = {
         body: max((piece.z_range[1] for piece in solids.pieces.values()), default=0.0)

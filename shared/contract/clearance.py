@@ -14,8 +14,8 @@ from shared.stage import jsonfile
 CLEARANCE_UNITS = {"length": UNITS["length"], "time": UNITS["time"]}
 Proof = Literal["layers", "turn", "slide", "motion"]
 """``layers``: the pieces lie at different heights, whatever moves. ``turn``: holds at every angle of the joint between
-the two bodies. ``slide``: holds at every place along the line of that joint. ``motion``: holds over the motion in
-data.json."""
+the two bodies, in space in every pose that it allows. ``slide``: holds at every place along the line of that joint.
+``motion``: holds over the motion in data.json."""
 
 
 class PairClearance(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):

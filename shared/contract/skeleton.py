@@ -7,6 +7,7 @@ The solve stage writes it, because the symbols belong to the kinds of joints tha
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -19,6 +20,14 @@ from shared.stage.errors import UserError
 Unit = Annotated[float, msgspec.Meta(ge=0, le=1)]
 NonNegative = Annotated[float, msgspec.Meta(ge=0)]
 Positive = Annotated[float, msgspec.Meta(gt=0)]
+
+
+_SIDE, _RISE = math.radians(-20.705), math.radians(19.471)
+VIEW = (
+    (math.cos(_SIDE), math.sin(_SIDE), 0.0),
+    (-math.sin(_SIDE) * math.sin(_RISE), math.cos(_SIDE) * math.sin(_RISE), math.cos(_RISE)),
+)
+"""Directions right and up of the picture of a skeleton in space: the dimetric view of mbsd/spatial/drawing.py."""
 
 
 class _Strict(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
@@ -71,6 +80,8 @@ class End(_Strict, kw_only=True):
     body: str
     x: float = 0.0
     y: float = 0.0
+    z: float | msgspec.UnsetType = msgspec.UNSET
+    """Third coordinate, in space alone; such ends are seen in the view of the skeleton."""
 
 
 class Carrier(_Strict, kw_only=True):

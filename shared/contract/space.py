@@ -93,6 +93,22 @@ class BodyMotion3(Strict, kw_only=True):
         """(T, 4)"""
         return columns(self, "qw", "qx", "qy", "qz")
 
+    @property
+    def changes(self) -> tuple[tuple[Array, Array, Array], tuple[Array, Array, Array]]:
+        """Place (T, 3) and quaternion (T, 4), each with its first and second derivative.
+
+        q' = w q / 2 and q'' = (w' q + w q') / 2, with the angular velocity w in the world.
+        """
+        import numpy as np
+
+        from shared.contract.quaternions import product
+
+        q, zero = self.quaternion, np.zeros((len(self.x), 1))
+        w, alpha = (np.hstack([zero, columns(self, *(f"{name}{axis}" for axis in "xyz"))]) for name in ("w", "alpha"))
+        rate = 0.5 * product(w, q)
+        bend = 0.5 * (product(alpha, q) + product(w, rate))
+        return (self.place, columns(self, "vx", "vy", "vz"), columns(self, "ax", "ay", "az")), (q, rate, bend)
+
 
 class JointMotion3(Strict, kw_only=True):
     """One joint over time: the place of its second marker, its axis, and the reaction on the second body."""

@@ -201,7 +201,7 @@ def mechanism_names() -> list[str]:
 
 
 def planar_names() -> list[str]:
-    """Return the mechanisms in the plane: pages, sites and some tests have no others yet."""
+    """Return the mechanisms in the plane: some tests have no others yet."""
     return planar_among(mechanism_names())
 
 
@@ -378,6 +378,8 @@ class Out:
         self.compare = self.folder / "compare"
         self.glb = self.folder / f"{self.name}.glb"
         self.view = self.folder / "view.html"
+        self.article = self.folder / "article.html"
+        self.designs = self.folder / "designs.bin"
         self.report = self.folder / "report.md"
         self.poster = self.folder / "poster.png"
         self.contact = self.folder / "contact.png"

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from shared.stage.console import fail
-from shared.stage.paths import all_mechanisms
+from shared.stage.paths import all_mechanisms, imports_space, mechanism_file, variants_in
 from shared.stage.scale import scale_of
 from shared.system.missing import missing_libraries, sentence
 from studio.command import stages
@@ -72,6 +72,20 @@ def compare(command: Command, name: str, said: Mapping[str, str], run: Run) -> i
     return run.last(stages.COMPARE.words(name, said))
 
 
+def article(command: Command, name: str, said: Mapping[str, str], run: Run) -> int:
+    """Write the article; the variants that stand in it are solved first."""
+    if imports_space(mechanism_file(name)):
+        fail(f"{name} moves in space; articles are of mechanisms in the plane")
+        return 1
+    from render.article import VARIANTS
+
+    for variant in variants_in(mechanism_file(name))[:VARIANTS] if "-" not in name else ():
+        code = run.all_of(stage.words(f"{name}-{variant}", said) for stage in stages.BARE_MOTION)
+        if code >= 128:
+            return code  # one that does not run is left out
+    return in_turn(command, name, said, run)
+
+
 def film(command: Command, name: str, said: Mapping[str, str], run: Run) -> int:
     """Render the film; a comparison of two variants first prepares both."""
     if said.get("story") != "compare":
@@ -103,6 +117,7 @@ def _has_libraries() -> bool:
 OTHERS: dict[str, Callable[[Command, str, Mapping[str, str], Run], int]] = {
     "gallery": gallery,
     "compare": compare,
+    "article": article,
     "film": film,
     "export": export,
     "parts": at_scale,

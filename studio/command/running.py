@@ -39,6 +39,7 @@ MADE = {
     "all": f"{EVERYTHING}; goes on after a failure",
     "overnight": f"{EVERYTHING}; in the background, also after the logout",
     "shot": "the description of the film, checked: out/<name>/shot.json",
+    "designs": "motions with other numbers, for numbers to drag without Python: out/<name>/designs.bin",
     "usd": "the scene as OpenUSD: out/<name>/export/",
 }
 """Result of a stage or command, in words."""

@@ -159,6 +159,8 @@ COMPARE = Stage("render", "compare", ("spectra",))
 GLB = Stage("render", "glb", solids=True)
 USD = Stage("render", "usd", ("format",), solids=True)
 VIEW = Stage("render", "view")
+DESIGNS = Stage("studio.site.designs")
+ARTICLE = Stage("render", "article")
 POSTER, CONTACT, FRAMES, SCENE, SCENE_UI = (
     Stage("render", name, _PICTURE, solids=True) for name in ("poster", "contact", "frames", "scene", "scene-ui")
 )

@@ -87,6 +87,8 @@ COMMANDS: dict[str, Command] = {
                 (*stages.SCENERY, stages.GLB)),
         Command("view", "one HTML page with the machine, its forces and its plots: out/<name>/view.html",
                 (stages.PARTS_IF_ANY, stages.SOLVE, stages.SHOT, stages.VIEW)),
+        Command("article", "one HTML page that explains the machine, with numbers to drag: out/<name>/article.html",
+                (stages.PARTS_IF_ANY, stages.SOLVE, stages.SHOT, stages.DESIGNS, stages.ARTICLE)),
         Command(
             "live", "a page that follows the editor: sliders, dragging, fits to a path; prints its address",
             (Stage("studio.live", options=("port", "limit", "no-parts", "open")),),

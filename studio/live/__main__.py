@@ -9,7 +9,7 @@ import webbrowser
 
 from shared.stage.console import run_cli, say
 from shared.stage.errors import UserError
-from shared.stage.paths import known_name
+from shared.stage.paths import imports_space, known_name, mechanism_file, owner_of
 
 LIMIT = 30.0
 """Seconds that mechanism.py may take to be solved, if nothing else is said."""
@@ -27,6 +27,11 @@ def main() -> int:
     parser.add_argument("--open", action="store_true", help="open the page in the browser")
     arguments = parser.parse_args()
     name = known_name(arguments.name)
+    file = mechanism_file(owner_of(name))
+    if file.is_file() and imports_space(file):
+        raise UserError(
+            f"{name} is a mechanism in space, for which there are no sliders yet; `mbsd view {name}` shows it"
+        )
     if not arguments.limit > 0:
         raise UserError(f"live: --limit {arguments.limit:g} is not a time; give seconds above 0")
     with bound(arguments.port) as listener:

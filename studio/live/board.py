@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from studio.live.messages import framed
@@ -12,6 +12,11 @@ from studio.live.messages import framed
 
 MOST = 500
 """Steps that are kept."""
+
+
+def differing(values: Mapping[str, float], file: Mapping[str, float]) -> dict[str, float]:
+    """Return the numbers that the file has otherwise."""
+    return {name: value for name, value in values.items() if name in file and value != file[name]}
 
 
 class History:
@@ -53,9 +58,9 @@ class History:
         self._now = min(self._now + 1, len(self._states) - 1)
         return self.now
 
-    def keep(self, names: set[str]) -> None:
-        """Forget numbers other than ``names`` in all states."""
-        self._states = [{name: value for name, value in state.items() if name in names} for state in self._states]
+    def keep(self, file: Mapping[str, float]) -> None:
+        """Forget in all states the numbers that the file lacks, or has itself."""
+        self._states = [differing(state, file) for state in self._states]
 
     def written(self, values: dict[str, float], before: dict[str, float]) -> None:
         """Rebase all states after the file took these values in place of ``before``.
@@ -98,6 +103,11 @@ class Board:
         self._again = False
         """True if the same files are being solved once more."""
 
+    @property
+    def file(self) -> dict[str, float]:
+        """Values of the file, by name."""
+        return {number["name"]: number["value"] for number in self.numbers}
+
     def tell(self, header: dict[str, Any], payload: bytes = b"", replaces: bool = False) -> None:
         """Send all pages a message."""
         self._push(framed(header, payload), replaces)
@@ -106,7 +116,7 @@ class Board:
         """Return the messages that bring a newly opened page up to date."""
         state = {"numbers": self.numbers, "error": self.error, "lines": self._lines, "stop": self._stop}
         out = [framed({"kind": "state", **state, **self._values(), **more}, self.payload or b"")]
-        if self.solid is not None and not self.history.now:
+        if self.solid is not None:
             out.append(framed({"kind": "solid"}, self.solid))
         return out
 
@@ -132,7 +142,7 @@ class Board:
             seen = False
             self.tell({"kind": "solid"})
         self.numbers = numbers
-        self.history.keep({number["name"] for number in numbers})
+        self.history.keep(self.file)
         self.tell({"kind": "solved", "numbers": numbers, **self._values()})
         return seen
 
@@ -155,9 +165,9 @@ class Board:
             self.tell({"kind": "solid"}, self.solid)
 
     def parts(self, payload: bytes) -> None:
-        """Publish the parts of the file's motion; empty for none."""
+        """Publish the parts of the file's motion; empty for none. A page with other numbers dims them."""
         self.solid = payload or None
-        if self.solid is not None and not self.history.now:
+        if self.solid is not None:
             self.tell({"kind": "solid"}, self.solid)
 
     def fail(self, text: str) -> None:

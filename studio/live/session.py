@@ -16,7 +16,7 @@ from msgspec import to_builtins
 from shared.stage.errors import UserError
 from shared.stage.paths import mechanism_folder
 from studio.live import messages
-from studio.live.board import Board, Push
+from studio.live.board import Board, Push, differing
 from studio.live.fits import Fit
 from studio.live.messages import Drag, Set, Wish, Write
 from studio.live.processes.children import Child
@@ -138,7 +138,7 @@ class Session:
 
     def _set(self, wish: Set) -> None:
         messages.known(wish.values, self.board.numbers)
-        values = self.history.now | wish.values
+        values = differing(self.history.now | wish.values, self.board.file)
         if wish.final:
             self.history.add(values)
             self.board.tell_values()
@@ -167,7 +167,7 @@ class Session:
         if not values:
             raise UserError("no number differs from the file, so there is nothing to write")
         whole = {number["name"] for number in self.board.numbers if number["whole"]}
-        before = {number["name"]: number["value"] for number in self.board.numbers}
+        before = self.board.file
 
         def report(written: Written) -> None:
             self.history.written(values, before)
@@ -187,9 +187,9 @@ class Session:
         self._solve(request)
 
     def _fitted(self, values: dict[str, float]) -> None:
-        self.history.add(values)
+        self.history.add(differing(values, self.board.file))
         self.board.tell_values()
-        self._solve({"do": "set", "values": values, "final": True})
+        self._solve({"do": "set", "values": self.history.now, "final": True})
 
     def _solve(self, request: dict[str, Any]) -> None:
         """Give this request to the good child when it is free; of several the newest counts."""
@@ -219,7 +219,7 @@ class Session:
         elif kind == "motion":
             values = header.get("values") or (asked or {}).get("values") or {}
             if asked and asked["do"] == "drag" and asked.get("final"):
-                self.history.add(header["values"])
+                self.history.add(differing(header["values"], self.board.file))
                 self.board.tell_values()
             self.board.motion(header, payload, values)
         elif (asked or {}).get("do") == "solid":

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from shared.stage.console import run_cli
-from shared.stage.paths import all_mechanisms, known_name, planar_among
+from shared.stage.paths import all_mechanisms, known_name
 from studio.site import build
 
 
@@ -16,7 +16,7 @@ def main() -> int:
     )
     parser.add_argument("--only", default="", help="these machines: four_bar,pendulum; all if not given")
     asked = parser.parse_args()
-    names = [known_name(name) for name in asked.only.split(",")] if asked.only else planar_among(all_mechanisms())
+    names = [known_name(name) for name in asked.only.split(",")] if asked.only else all_mechanisms()
     return build.run(names)
 
 

@@ -15,6 +15,8 @@ from pathlib import Path
 
 from render.freshness import Freshness
 from render.gallery import small_poster
+from render.view.pictures import picture_of
+from shared.contract import is_in_space
 from shared.contract.quantity import counted
 from shared.stage import files
 from shared.stage.console import progress, say, warn
@@ -117,16 +119,22 @@ def _write_mechanism(name: str, folder: Path, freshness: Freshness) -> Entry:
     entry = entry_of(name)
     folder.mkdir(parents=True, exist_ok=True)
     entry.has_sliders = write_machine_page(name, folder / "machine.html")
-    film = next(filter(shown.is_of_now, pages.films_of(out)), None) or _skeleton(out)
+    film, in_space = next(filter(shown.is_of_now, pages.films_of(out)), None), is_in_space(out.motion)
+    if film is None and not in_space:
+        film = _skeleton(out)
     if film is not None:
         entry.loop = _once(film, folder / "loop.mp4", pages.write_loop)
     whole = next(filter(shown.is_of_now, pages.page_films(out)), None)
     if whole is not None:
         entry.film = _once(whole, folder / "film.mp4", _copied)
     poster = out.poster if out.poster.is_file() and shown.is_of_now(out.poster) else None
+    if poster is None and film is None and in_space and picture_of(out).is_file():
+        poster = picture_of(out)  # there is no moving skeleton of it
     entry.picture = _picture(poster, film, folder / "picture.jpg")
     entry.downloads = write_downloads(name, folder / "files", shown.is_of_now)
-    for file in {"loop.mp4", "film.mp4"} - {entry.loop, entry.film}:
+    if out.article.is_file() and shown.is_of_now(out.article):
+        entry.article = _once(out.article, folder / "article.html", _copied)
+    for file in {"loop.mp4", "film.mp4", "article.html"} - {entry.loop, entry.film, entry.article}:
         (folder / file).unlink(missing_ok=True)
     shown.warn()
     return entry

@@ -15,7 +15,7 @@ from render.insights import insights
 from render.report import description
 from render.report.facts import facts
 from render.view.payload import title_of
-from shared.contract import Motion, read_motion, read_parts
+from shared.contract import AnyMotion, Motion, read_any_motion, read_parts
 from shared.stage.files import write_bytes
 from shared.stage.paths import Out, mechanism_file
 
@@ -48,13 +48,15 @@ COMMON = 2
 """A filter of fewer machines is none."""
 
 
-def purposes(name: str, said: str, motion: Motion) -> list[str]:
+def purposes(name: str, said: str, motion: AnyMotion) -> list[str]:
     """Return the filters that match a mechanism, in the order of the lists above."""
     text = f"{name.replace('_', ' ')}. {said}"
     out = [purpose for purpose, pattern in WORDS.items() if re.search(pattern, text, re.IGNORECASE)]
     if ENGINE.search(text):
         out.append("engines")
-    things = (motion.joints, motion.drivers, motion.forces, motion.contacts)
+    if not isinstance(motion, Motion):
+        out.append("moves in space")
+    things = (motion.joints, motion.drivers, motion.forces, getattr(motion, "contacts", {}))
     kinds = {thing.kind for group in things for thing in group.values()}
     out += [part for part, stems in KINDS.items() if any(stem in kind for kind in kinds for stem in stems)]
     return out
@@ -162,6 +164,7 @@ class Entry:
     picture: str = ""
     loop: str = ""
     film: str = ""
+    article: str = ""
     insights: list[str] = field(default_factory=list)
     has_sliders: bool = False
     downloads: list[Download] = field(default_factory=list)
@@ -171,10 +174,11 @@ class Entry:
 def entry_of(name: str) -> Entry:
     """Return the entry of a mechanism with a motion. Raises UserError for unreadable files."""
     out = Out(name)
-    motion = read_motion(out.motion, name)
+    motion = read_any_motion(out.motion, name)
     parts = read_parts(out.parts, name) if out.parts.is_file() else None
     clearance = current_clearance(out, parts, "site")
     text = description(name)
-    shows = [each.sentence() for each in insights(motion)[:INSIGHTS]]
+    telling = insights(motion)[:INSIGHTS] if isinstance(motion, Motion) else []
+    shows = [each.sentence() for each in telling]
     known = facts(motion, parts, clearance)
     return Entry(name, title_of(name), sentences(text), known, purposes(name, text, motion), insights=shows)

@@ -16,11 +16,13 @@ from render.presets import PRESETS
 from render.view.bundle import bundle, sources_key
 from render.view.document import document, encode, sketch
 from render.view.payload import read_payload
+from shared.contract import is_in_space
 from shared.contract.quantity import counted
 from shared.stage.console import warn
 from shared.stage.files import sources_hash, whole_file, write_bytes
-from shared.stage.paths import ROOT, Out, mechanism_file
-from shared.stage.stages import Stage, key_of, versions
+from shared.stage.paths import ROOT, Out
+from shared.stage.stages import Stage, key_of
+from studio.site.designs.stage import SOURCES, stage_of
 from studio.site.entries import Entry
 
 # Short silent film on the wall: from the mechanism's film, else from its moving skeleton.
@@ -143,6 +145,7 @@ def machine(entry: Entry, others: Sequence[Entry]) -> str:
         else f'<img class="film" src="{escape(entry.picture)}" width="960" height="540" alt="{escape(entry.title)}">'
     )
     moved = " Move a number and see what it changes." if entry.has_sliders else ""
+    told = f'\n<p><a href="{escape(entry.article)}">How it works, step by step</a></p>' if entry.article else ""
     place, sizes = f"{entry.name}/machine.html", 'width="960" height="640" loading="lazy"'
     embedded = f'<iframe src="{place}" title="{entry.title}" {sizes}></iframe>'
     inside = (
@@ -156,7 +159,7 @@ def machine(entry: Entry, others: Sequence[Entry]) -> str:
 <button type="button" class="theme">Dark</button>
 </header>
 <main>
-<p class="lead">{_prose(entry.said)}</p>
+<p class="lead">{_prose(entry.said)}</p>{told}
 {film}
 <h2>The machine</h2>
 <p>Turn it, play it, click a joint for its forces.{moved} <a href="machine.html">On a page of its own</a></p>
@@ -204,7 +207,6 @@ def _size(size: int) -> str:
 # Page of a mechanism on the site: the page of ``mbsd view`` with designs for its sliders.
 
 
-SOURCES = [ROOT / "studio" / name for name in ("site/designs", "site/pages.py", "live/child", "live/numbers.py")]
 DESIGNS_PATIENCE = 900.0
 """Seconds in which the designs of a machine have to be there."""
 
@@ -217,7 +219,7 @@ def write_machine_page(name: str, target: Path) -> bool:
     out = Out(name)
     designs = _designs(name)
     table = designs.read_bytes() if designs.is_file() else b""
-    key = key_of(out.view, designs if table else "none", sources_key(), sources_hash(*SOURCES))
+    key = key_of(out.view, designs if table else "none", sources_key(), sources_hash(*SOURCES, Path(__file__)))
     stage = Stage(out, "site-machine", key, [target])
     if not stage.is_fresh():
         payload = read_payload(out)
@@ -238,11 +240,11 @@ def _designs(name: str) -> Path:
     Empty where no number can be moved; missing where the process failed, which is reported and tried again.
     """
     out = Out(name)
-    path = out.folder / "designs.bin"
-    read = out.motion, out.skeleton, mechanism_file(name)
-    key = key_of(*read, sources_hash(*SOURCES, ROOT / "render" / "view"), versions("numpy"))
-    stage = Stage(out, "designs", key, [path])
-    if stage.is_fresh():
+    path = out.designs
+    if is_in_space(out.motion):  # its numbers cannot be moved yet
+        path.unlink(missing_ok=True)
+        return path
+    if stage_of(out).is_fresh():
         return path
     words = [sys.executable, "-m", "studio.site.designs", name]
     try:
@@ -253,6 +255,4 @@ def _designs(name: str) -> Path:
     if said:
         warn("site", f"{name}: its page has no sliders: {said}")
         path.unlink(missing_ok=True)
-    else:
-        stage.record()
     return path

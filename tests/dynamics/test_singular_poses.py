@@ -324,3 +324,38 @@ def test_redundant_cranks_far_from_the_origin_are_not_singular(away: float) -> N
     m.start_near(bar0=-121, bar1=-121, bar2=-121, coupler=(away - 0.206, 0.7 * away - 0.343, 0))
     sol = m.simulate(0.3, steps=10)
     np.testing.assert_allclose(sol.body("bar0").theta, sol.body("bar2").theta, atol=1e-9)
+
+
+def platform(start: float, mass: float = 1.0) -> Mechanism:
+    """Return a platform on three alike rods from one angle (rad), of which any two hold it."""
+    m = Mechanism("platform", gravity=(0.0, -G))
+    plate = m.body("plate", mass=mass, com=(0.2, 0.1), inertia=0.02)
+    for k, (x, y) in enumerate([(0.0, 0.0), (0.2, 0.1), (0.5, 0.2)]):
+        rod = m.body(f"rod{k}", mass=0.5 + 0.1 * k, com=(0.2, 0.0), inertia=0.01)
+        m.revolute(f"foot{k}", m.ground.at(x, y), rod.at(0, 0))
+        m.revolute(f"head{k}", plate.at(x, y), rod.at(0.4, 0))
+        m.start_near(**{f"rod{k}": (x, y, math.degrees(start))})
+    m.start_near(plate=(0.4 * math.cos(start), 0.4 * math.sin(start), 0.0))
+    return m
+
+
+@pytest.mark.parametrize("beside", [0.0, 1e-7, 1e-4, -3e-3])
+def test_rods_that_repeat_others_start_in_line_with_two_feet(beside: float) -> None:
+    """Two of the rods are flat there, all three are not."""
+    start = math.atan2(0.1, 0.2) + beside
+    sol = platform(start).simulate(0.5, steps=10, tolerance=1e-11)
+    turn = sol.body("rod0").theta
+    inertia = sum(0.01 + (0.5 + 0.1 * k) * 0.2**2 for k in range(3)) + 0.4**2
+    lever = (1.8 * 0.2 + 0.4) * G / inertia
+    assert np.allclose(sol.body("plate").theta, 0.0, rtol=0.0, atol=1e-9)
+    speed = np.sqrt(2.0 * lever * np.maximum(np.sin(start) - np.sin(turn), 0.0))
+    assert np.allclose(np.abs(sol.body("rod0").omega), speed, rtol=0.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("start", [1.0, 1.25])
+def test_rods_that_repeat_others_have_derivatives_where_two_of_them_are_flat(start: float) -> None:
+    h, of = 1e-4, "plate.x"
+    own = platform(start).sensitivities(of, "plate.mass", 1.5, 10, tolerance=1e-9)
+    there, here = (platform(start, 1.0 + h * side).simulate(1.5, steps=10, tolerance=1e-11) for side in (1, -1))
+    known = (there.body("plate").x - here.body("plate").x) / (2.0 * h)
+    assert np.allclose(own[of][:, 0], known, rtol=0.0, atol=2e-5 * np.abs(known).max())

@@ -138,3 +138,28 @@ def test_a_valve_that_is_none_and_a_piston_beyond_its_end_are_refused() -> None:
     m.change("push", law=constant_rate(0.3, 0.0))
     with pytest.raises(ModelError, match=r"m along its cylinder, of which 0 \.\. 0\.2 m are its stroke"):
         m.sweep(1.0, steps=20)
+
+
+@pytest.fixture(scope="module")
+def valved() -> Mechanism:
+    return engine(lambda t: 0.015 * np.sin(TURN * t + 0.6), lap=0.006, width=2.0)
+
+
+def test_its_pressures_do_not_depend_on_how_many_outputs_there_are(valved: Mechanism) -> None:
+    few, many = (valved.sweep(times=times).force("steam") for times in ([0.0, 0.5, 1.0], np.linspace(0.0, 1.0, 401)))
+    assert np.allclose(few.pressure_a, many.pressure_a[::200], rtol=1e-6)
+    assert np.allclose(few.effort, many.effort[::200], rtol=0.0, atol=1e-6 * np.abs(many.effort).max())
+
+
+@pytest.mark.parametrize("number", ["supply", "bore"])
+def test_derivatives_of_efforts_take_its_pressures_along(valved: Mechanism, number: str) -> None:
+    """Pressures hang on all numbers, and efforts on them, also where outputs are few."""
+    times = np.linspace(0.0, 1.0, 6)
+    own = valved.sensitivities("push.effort", f"steam.{number}", times=times)["push.effort"][:, 0]
+    efforts, step = [], 1e-3 * {"supply": SUPPLY, "bore": BORE}[number]
+    for side in (1.0, -1.0):
+        valved.change("steam", **{number: {"supply": SUPPLY, "bore": BORE}[number] + side * step})
+        efforts.append(valved.sweep(times=times).driver("push").effort)
+    valved.change("steam", **{number: {"supply": SUPPLY, "bore": BORE}[number]})
+    known = (efforts[0] - efforts[1]) / (2.0 * step)
+    assert np.allclose(own, known, rtol=0.0, atol=1e-4 * np.abs(known).max())

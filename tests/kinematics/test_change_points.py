@@ -345,3 +345,49 @@ def test_loops_that_pass_together_all_go_on() -> None:
 def test_a_start_at_a_change_point_raises_an_error() -> None:
     with pytest.raises(SingularPoseError, match="start pose"):
         linkage("parallelogram", 180.0).sweep(1.0)
+
+
+def three_rods(turn: float) -> Solution:
+    """Return the motion of a deck on three alike rods from 1.1 rad, in a world turned by an angle (rad)."""
+    m = Mechanism("three rods", gravity=(G * math.sin(turn), -G * math.cos(turn)))
+    c, s = math.cos(turn), math.sin(turn)
+    deck = m.body("deck", mass=3.0, com=(0.0, 0.1), inertia=0.2)
+    rods = [m.bar(f"rod{k}", 0.2, mass=1.0) for k in range(3)]
+    for rod, x in zip(rods, (0.0, 0.33, 0.13), strict=True):
+        m.revolute(f"foot of {rod.name}", m.ground.at(c * x, s * x), rod.start)
+        m.revolute(f"head of {rod.name}", deck.at(x, 0), rod.end)
+    m.start_near(deck=math.degrees(turn), **{rod.name: math.degrees(1.1 + turn) for rod in rods})
+    m.drive_angle("motor", rods[0], cycloidal(-2.0, 1.0, start=1.1 + turn))
+    return m.sweep(1.0, steps=60)
+
+
+@pytest.mark.parametrize("beside", [-0.02, 1e-6, 0.017, 0.1])
+@pytest.mark.parametrize("quarter", [0.0, 0.5 * math.pi])
+def test_rods_that_repeat_others_have_efforts_where_rows_of_some_are_singular(quarter: float, beside: float) -> None:
+    """With one row of the third rod, but not with both, there is a toggle where it is along an axis of the world."""
+    known, sol = three_rods(0.0), three_rods(quarter - 1.1 + beside)
+    assert sol.is_defined.all()
+    assert sol.stats.position_residual < 1e-12
+    torque = known.driver("motor").torque
+    assert np.allclose(sol.driver("motor").torque, torque, rtol=0.0, atol=1e-9 * np.abs(torque).max())
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2, 4, 5, 3), (5, 1, 2, 4, 3, 0), (4, 2, 3, 1, 5, 0)])
+def test_rods_that_repeat_others_pass_their_flat_pose_in_any_order_of_joints(order: tuple[int, ...]) -> None:
+    """Rows of some choices pass two change points there at once; the platform passes one."""
+
+    def torque(order: tuple[int, ...]) -> np.ndarray:
+        m = Mechanism("three rods", gravity=(0.0, -G))
+        deck = m.body("deck", mass=3.0, com=(0.0, 0.1), inertia=0.2)
+        rods, places = [m.bar(f"rod{k}", 0.236, mass=1.0) for k in range(3)], (0.0, 0.33, 0.13)
+        for k in order:
+            rod, x = rods[k % 3], places[k % 3]
+            ends = (m.ground.at(x, 0), rod.start) if k < 3 else (deck.at(x, 0), rod.end)
+            m.revolute(f"joint{k}", *ends)
+        start = 1.0721890625819386
+        m.start_near(deck=0, **{rod.name: math.degrees(start) for rod in rods})
+        m.drive_angle("motor", rods[0], cycloidal(-math.pi, 2.453386424393165, start=start))
+        return m.sweep(2.453386424393165, steps=360).driver("motor").torque
+
+    known = torque((0, 1, 2, 3, 4, 5))
+    assert np.allclose(torque(order), known, rtol=0.0, atol=1e-9 * np.abs(known).max())

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
+import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -14,16 +17,24 @@ from mechanisms.stages.parts.meshes import VOLUME_TOLERANCE
 from mechanisms.stages.parts_files import read_mesh
 from mechanisms.stages.solve.masses import bare_solution
 from render import glb
-from render.film.composing import KEPT
+from render.film.composing import KEPT, WHOLE, View, cut_share, shown_area
+from render.film.film import Film
+from render.film.framing import CameraPose, in_studio
 from render.film.inputs import read_film
-from render.frames.story.telling import telling_of
+from render.frames.story.telling import Telling, telling_of
+from render.insights import insights
+from render.insights.stops import stops
 from render.presets import PRESETS, WIDE
+from render.sound.setting import RATE
+from render.sound.sound import sound_of_story
 from shared import contract
 from shared.contract.shot import Names, read_shot, refuse_unknown
 from shared.stage.paths import Out, planar_names
 from tests.mechanisms.author_project import folders_and_variants
 from tests.render.filling import boxes, filled, refuse_overlaps
 from tests.render.glb_file import GlbFile
+from tests.render.insights.recomputed import ELSEWHERE, RECOMPUTED
+from tests.render.sound.heard import short_term
 from tests.running.warm import Warm
 
 # Every folder of mechanisms/, without being told: it solves, closes, has solids, a shot and a GLB, never touches.
@@ -144,9 +155,22 @@ def test_solids_are_closed_and_of_the_size_that_is_told(out: Out) -> None:
             assert len(mesh.faces) == piece.triangles
 
 
-def test_its_story_is_made_without_a_line_in_its_folder(out: Out) -> None:
+@pytest.fixture(scope="module")
+def telling(products: tuple[str, Path]) -> Iterator[Telling]:
+    """Return the story that the tests of one machine share."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("MBSD_OUT", str(products[1]))
+        yield telling_of(Out(products[0]), PRESETS["draft"])
+
+
+SLIVER, SMALL = 0.15, 0.15
+"""Part of a plate or stand that a picture cuts, where it cuts it; of a picture, that the room of the machine takes."""
+MOVES, STANDS, JUMP = 0.8, 0.1, 12.0
+"""Parts of a story in which the picture moves at least and time stands still at most; LU in a second."""
+
+
+def test_its_story_is_made_without_a_line_in_its_folder(telling: Telling) -> None:
     """20 to 40 s, few more pictures than a loop film of 3 s or more, time monotone, no camera among the parts."""
-    telling = telling_of(out, PRESETS["draft"])
     story, clock = telling.story, telling.film.clock
     assert 20 <= story.seconds <= 40
     assert len(story.pictures) <= 2.5 * max(clock.frames, 3.0 * telling.film.shot.fps)
@@ -159,6 +183,77 @@ def test_its_story_is_made_without_a_line_in_its_folder(out: Out) -> None:
         back = np.flatnonzero(np.diff(times) < -1e-12)
         assert clock.repeats or placed.shot.name == "motion" or not len(back)
         assert all(times[k + 1] == pytest.approx(clock.start, abs=1e-3 * (clock.end - clock.start)) for k in back)
+
+
+def test_its_story_moves_and_is_heard_from_the_first_second(telling: Telling) -> None:
+    story, clock = telling.story, telling.film.clock
+    pictures = [story.picture(frame) for frame in range(0, story.total, story.step)]
+    assert np.mean([a != b for a, b in itertools.pairwise(pictures)]) >= MOVES
+    assert np.mean([story.over(frame).rate == "time stands still" for frame in range(story.total)]) <= STANDS
+    heard = story.time_map(clock.start, clock.end, clock.repeats)
+    assert (heard.moments_at(np.linspace(0.02, 0.98, 20))[1] > 0.0).all()
+
+
+@pytest.mark.slow
+def test_its_story_is_never_suddenly_loud(telling: Telling) -> None:
+    """By loudness of 3 s each, as EBU R 128 has it; nor is its first second silent."""
+    clock = telling.film.clock
+    wave = sound_of_story(telling.film, telling.story.time_map(clock.start, clock.end, clock.repeats))
+    assert np.abs(wave[:, :RATE]).max() > 1e-3
+    level = short_term(wave, 0.5)
+    assert (level[2:] - level[:-2]).max() <= JUMP
+
+
+def _seen(film: Film, camera: CameraPose) -> tuple[View, np.ndarray]:
+    """Return a camera as a view, and its place in the studio."""
+    view = View(camera.azimuth, camera.elevation, camera.lens, 0.0, aspect=film.aspect)
+    return view, in_studio(np.array(camera.position), camera.up)
+
+
+def _cuts(film: Film, camera: CameraPose) -> list[float]:
+    """Return the parts of plate and stand that are cut."""
+    view, at = _seen(film, camera)
+    shares = [cut_share(view, at, in_studio(thing, camera.up)) for thing in film.subject.things]
+    return [share for share in shares if share > WHOLE]
+
+
+def test_its_machine_is_large_in_the_median_shot_and_nothing_is_cut_by_a_sliver(telling: Telling) -> None:
+    """The machine is the room of all that moves; plate and stand are looked at where a camera begins and ends."""
+    story, film = telling.story, telling.film
+    areas = []
+    for placed in story.placed:
+        middle = story.picture((placed.first + placed.end) // 2)
+        view, at = _seen(film, middle.camera)
+        areas.append(shown_area(view, at, in_studio(film.subject.few + film.way(middle.at), middle.camera.up)))
+        if placed.shot.name not in ("assembly", "macro", "section"):
+            for frame in (placed.first, placed.end - 1):
+                cuts = _cuts(film, story.picture(frame).camera)
+                assert min(cuts, default=1.0) >= SLIVER, (placed.shot.name, frame)
+    assert np.median(areas) >= SMALL
+
+
+SMALL_TALK = {"stroke", "bend", "reach", "even_return", "period", "energy_kept"}
+"""Kinds that are no insight by themselves."""
+LONGEST = 150
+"""Letters of a sentence; more than a caption holds."""
+
+
+def test_it_has_three_insights_whose_numbers_are_those_of_the_motion(out: Out) -> None:
+    """Each number once more by another formula, from data.json; what a caption may say is among these."""
+    motion = contract.read_motion(out.motion)
+    findings = insights(motion)
+    assert len({each.kind for each in findings} - SMALL_TALK) >= 3, [each.sentence() for each in findings]
+    for each in (*findings, *stops(motion)):
+        assert each.kind in RECOMPUTED or each.kind in ELSEWHERE
+        for told, again in RECOMPUTED[each.kind](motion, each) if each.kind in RECOMPUTED else ():
+            assert told == pytest.approx(again, rel=0.02, abs=0.01), (each.kind, each.sentence())
+    for each in findings:
+        for said in (each.sentence(language) for language in ("en", "de")):
+            assert len(said) <= LONGEST, said
+            assert re.match(r"[A-Z0-9ÄÖÜ].*\.$", said), said
+            assert not re.search(r"[{}_]|\bnan\b|no number", said), said
+        assert each.start <= each.end
+        assert np.isfinite(each.number)
 
 
 def test_the_glb_moves_as_data_json_has_it(out: Out) -> None:
@@ -210,13 +305,16 @@ def test_solving_anew_gives_the_same_bytes(products: tuple[str, Path], out: Out,
 def test_it_fills_wide_and_tall_pictures_and_its_words_have_room(out: Out) -> None:
     """The mechanism fills four fifths of the width or height, and nothing written overlaps.
 
-    Where plate and stand are whole it may fill three quarters of that.
+    Where plate and stand are whole for it, it may fill three quarters of that; none of them is cut by a sliver.
     It is measured on coarse solids, springs and belts over the film; with titles and all arrows at once, too, nothing
     that is written overlaps or leaves the picture.
     """
     for aspect in (WIDE, "9:16"):
         shape = PRESETS["draft"].framed(aspect).aspect
-        assert filled(read_film(out, "", shape)) >= KEPT * 0.8 - 5e-3, aspect
+        film = read_film(out, "", shape)
+        cuts = _cuts(film, film.camera(0))
+        assert min(cuts, default=1.0) >= SLIVER, aspect
+        assert filled(film) >= (1.0 if cuts or not film.subject.things else KEPT) * 0.8 - 5e-3, aspect
         written = boxes(read_film(out, "velocities,accelerations,forces,reactions,title", shape))
         assert len(written) >= 2
         refuse_overlaps(written)

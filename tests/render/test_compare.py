@@ -58,7 +58,7 @@ def test_each_panel_holds_the_lines_of_all_motions(solved: dict[str, Motion]) ->
     motions = {"as it is": solved["four_bar"], "faster": solved["four_bar-faster"]}
     figure = comparison.figures("four_bar", motions)["drivers"]
     torque = figure.axes[0]
-    assert torque.get_title(loc="left") == "motor, torque / (mN m)"
+    assert torque.get_title(loc="left") == "motor, torque / (mN·m)"
     for line, motion in zip(torque.lines, motions.values(), strict=True):
         np.testing.assert_array_equal(line.get_xdata(), motion.time)
         np.testing.assert_array_equal(line.get_ydata(), motion.drivers["motor"].effort)

@@ -91,7 +91,7 @@ def test_facts_are_those_of_the_motion() -> None:
     motion = four_bar_motion()
     said, fastest = facts(motion, None, None), 0.090 * float(np.abs(motion.bodies["rocker"].omega).max())
     assert said[:3] == ["1 degree of freedom", "repeats after 1 s", f"C reaches {speed(fastest)}"]
-    assert "motor up to 54 mN m" in said
+    assert "motor up to 54 mN·m" in said
     assert "transmission angle from 41.8°" in said
     assert facts(bouncing_ball(), None, None)[1:3] == ["0.903 s of motion", "ball reaches 4.43 m/s (15.9 km/h)"]
 
@@ -108,7 +108,7 @@ def test_where_no_driver_works_facts_tell_the_force_that_does() -> None:
     load = msgspec.structs.replace(torque, effort=[-0.5] * 361, power=[-1.0] * 361)
     driven = msgspec.structs.replace(motion, drivers={"wish": idle}, forces={"load": load, "hand": torque})
     said = facts(driven, None, None)
-    assert "hand up to 20 mN m" in said
+    assert "hand up to 20 mN·m" in said
     assert not [fact for fact in said if "load" in fact or "wish" in fact]
 
 

@@ -43,7 +43,7 @@ def test_a_row_has_the_numbers_of_what_was_done(capsys: pytest.CaptureFixture[st
     assert rows["mechanism"].split("  ")
     four_bar = rows["four_bar"]
     assert "2 min 05 s" in four_bar
-    for word in ("m/s (", "N m (motor)", "125 µm", "done"):
+    for word in ("m/s (", "N·m (motor)", "125 µm", "done"):
         assert word in four_bar
     assert rows["broken"].split() == ["broken", "3.0", "s", "failed"]
     assert rows["cleaned"].split() == ["cleaned", "1.0", "s", "done"]
@@ -69,9 +69,9 @@ def test_rounding_is_no_effort() -> None:
     [(name, driver)] = MOTION.drivers.items()
     noise = msgspec.structs.replace(driver, effort=[2e-18 * (-1) ** k for k in range(len(driver.effort))])
     idle = msgspec.structs.replace(MOTION, drivers={name: noise})
-    assert facts.largest_effort(idle) == f"0 N m ({name})"
+    assert facts.largest_effort(idle) == f"0 N·m ({name})"
     small = msgspec.structs.replace(driver, effort=[1e-7 for _ in driver.effort])
-    assert facts.largest_effort(msgspec.structs.replace(MOTION, drivers={name: small})) == f"100 nN m ({name})"
+    assert facts.largest_effort(msgspec.structs.replace(MOTION, drivers={name: small})) == f"100 nN·m ({name})"
 
 
 def test_a_driver_that_pushes_by_nothing_leaves_the_place_to_a_motor() -> None:
@@ -86,7 +86,7 @@ def test_a_driver_that_pushes_by_nothing_leaves_the_place_to_a_motor() -> None:
     [(name, driver)] = MOTION.drivers.items()
     idle = msgspec.structs.replace(driver, effort=zeros)
     moved = msgspec.structs.replace(MOTION, drivers={name: idle}, forces={"turner": motor})
-    assert facts.largest_effort(moved) == "500 mN m (turner)"
+    assert facts.largest_effort(moved) == "500 mN·m (turner)"
     assert facts.largest_effort(msgspec.structs.replace(MOTION, forces={"turner": motor})).endswith(f"({name})")
     still = msgspec.structs.replace(motor, effort=zeros)
-    assert facts.largest_effort(msgspec.structs.replace(moved, forces={"turner": still})) == f"0 N m ({name})"
+    assert facts.largest_effort(msgspec.structs.replace(moved, forces={"turner": still})) == f"0 N·m ({name})"

@@ -45,7 +45,7 @@ def test_near_a_singular_pose_an_axis_is_cut_and_says_so() -> None:
         diagnostics = msgspec.structs.replace(MOTION.diagnostics, singularity_margin=margin)
         motion = msgspec.structs.replace(MOTION, drivers=high, diagnostics=diagnostics)
         drawn = figure("reactions", motion)
-        said = "clipped: up to 20 TN m near a singular pose"
+        said = "clipped: up to 20 TN·m near a singular pose"
         assert (said in shown(drawn)) is cut
         assert bool(drawn.axes[1].get_ylim()[1] < 10) is cut
 
@@ -129,7 +129,7 @@ def test_forces_and_contacts_have_a_page_of_their_own() -> None:
     assert "forces" not in plots.plots_of(MOTION)
     drawn = figure("forces", motion)
     lines = [{line.get_label(): line.get_ydata() for line in axes.lines} for axes in drawn.axes]
-    assert [axes.get_ylabel() for axes in drawn.axes] == ["force / N", "torque / (mN m)", "power / W"]
+    assert [axes.get_ylabel() for axes in drawn.axes] == ["force / N", "torque / (mN·m)", "power / W"]
     np.testing.assert_array_equal(lines[0]["spring"], motion.forces["spring"].effort)
     np.testing.assert_array_equal(lines[1]["twist"], motion.forces["twist"].effort)
     assert max(lines[1]["end lower"]) > 0.0
@@ -201,7 +201,7 @@ def test_rounding_is_drawn_as_a_flat_line() -> None:
                     assert np.ptp(values) == 0.0, (plot, line.get_label())
     assert [axes.get_ylabel() for axes in figure("reactions", motion).axes] == [
         "reaction force / mN",
-        "driver torque / (N m)",
+        "driver torque / (N·m)",
     ]
 
 
@@ -252,7 +252,7 @@ def test_couples_are_shown_everywhere_as_the_solution_has_them() -> None:
     assert motion.couple.mx == pytest.approx(exact.mx, abs=1e-12)
     largest = float(np.abs(exact.mx).max())
     assert quantity(motion, "shaking couple").components["x"] == pytest.approx(exact.mx, abs=1e-9 * largest)
-    assert "| couple | 5 N m | 0 N m |" in report(motion, None, None)
+    assert "| couple | 5 N·m | 0 N·m |" in report(motion, None, None)
     on_the_page = couple_of(motion)
     assert on_the_page is not None
     assert not on_the_page["my"].any()

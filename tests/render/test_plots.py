@@ -94,7 +94,7 @@ def test_a_slider_a_joint_torque_and_a_pusher_get_their_plots(out: Out) -> None:
     assert (out.plots / "slider-slider.png").is_file()
     assert not list(out.plots.glob("point-*"))
     labels = [axes.get_ylabel().replace("\n", " ") for axes in figure("reactions", motion).axes]
-    assert labels == ["reaction force / N", "reaction torque / (mN m)", "driver torque / (mN m)", "driver force / mN"]
+    assert labels == ["reaction force / N", "reaction torque / (mN·m)", "driver torque / (mN·m)", "driver force / mN"]
     assert all(overlaps(figure(plot, motion)) == [] for plot in ("path", "reactions", "bodies", "hodographs"))
 
 

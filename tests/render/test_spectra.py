@@ -21,6 +21,7 @@ from render.plots.measures import horizon, marks
 from render.plots.pages.comparison import spectra_figure
 from render.plots.pages.spectra import Spectrum, spectrum, stems
 from shared.contract import Motion, write_motion
+from shared.contract.quantity import written
 from shared.contract.skeleton import write_skeleton
 from shared.stage import paths
 from shared.stage.errors import UserError
@@ -177,11 +178,11 @@ def test_dead_points_and_events_are_marked() -> None:
     assert [words for _, words in marks(bouncing_ball())] == ["floor: impact"]
 
 
-def test_the_largest_speed_is_told_in_metres_a_second_and_km_an_hour() -> None:
+def test_the_largest_speed_is_told_with_its_angle() -> None:
     point = MOTION.points["P"]
     fast = np.hypot(point.vx, point.vy)
-    [said] = [text for text in shown(page("point-P", MOTION)) if "km/h" in text]
-    assert f"({3.6 * fast.max():.3g} km/h) at {360 * MOTION.time[int(fast.argmax())]:.4g}°" in said
+    [said] = [text for text in shown(page("point-P", MOTION)) if "m/s at" in text]
+    assert f"{written(float(fast.max()), 'm/s')} at {360 * MOTION.time[int(fast.argmax())]:.4g}°" in said
 
 
 def test_a_clockwise_driver_has_its_angle_as_axis_and_tells_how_long_a_turn_takes() -> None:

@@ -103,7 +103,7 @@ print(bundle.bundle().script)
 
 def _clone(folder: Path) -> Path:
     """Return a clone of another user who has built a page there."""
-    kept = folder / ".cache" / "page" / f"{bundle.sources_key()[:24]}.json"
+    kept = folder / ".cache" / "page" / f"main-{bundle.sources_key()[:24]}.json"
     jsonfile.write(kept, bundle.Bundle(script="kept in the clone", style="", licences=""))
     (folder / "Makefile").touch()
     for place in (folder, *folder.rglob("*")):

@@ -5,11 +5,13 @@ from __future__ import annotations
 import copy
 import pickle
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from mbsd.base.errors import ModelError
+from mbsd.measures import final, largest, samples
 from mbsd.spatial import Mechanism, constant_rate, harmonic
 from mbsd.spatial.arrays.packing import pack
 from mbsd.spatial.model.force import FORCE_KINDS
@@ -124,29 +126,75 @@ def test_solutions_are_pickled_with_their_functions() -> None:
     assert np.array_equal(again.body("body").place, sol.body("body").place)
 
 
-def test_many_simulations_are_single_ones() -> None:
+def pendulum() -> Mechanism:
     m = Mechanism("pendulum", gravity=(0, 0, -9.81))
     rod = m.rod("rod", (0, 0, 0), (1, 0, 0), mass=1.0, radius=0.02)
     m.revolute("hinge", m.ground, rod, at=(0, 0, 0), axis=(0, 1, 0))
     m.torsion_spring("twist", "hinge", stiffness=1.0)
     m.trace("tip", rod, at=(1, 0, 0))
-    stiffness, turn, rate = np.array([0.5, 2.0, 9.0]), [0.0, 20.0, -30.0], [0.0, 1.0, 2.0]
+    return m
+
+
+VARIED: dict[str, Any] = {
+    "vary": {"twist": {"stiffness": [0.5, 2.0, 9.0, 3.0]}, "rod": {"mass": [1.0, 2.0, 0.7, 1.5]}},
+    "start": {"hinge": [0.0, 20.0, -30.0, 170.0]},
+    "moving": {"hinge": [0.0, 1.0, 2.0, -40.0]},
+}
+
+
+@pytest.mark.parametrize("formulation", ["tree", "reference"])
+def test_many_simulations_in_the_compiled_loop_are_single_ones(formulation: str) -> None:
+    m, asked = pendulum(), {"duration": 0.7, "steps": 7, "formulation": formulation}
+    varied = {given: dict(VARIED[given]) for given in VARIED if given != "start" or formulation == "tree"}
     many = m.simulate_many(
-        lambda sol: {"tip": sol.point("tip").place[-1], "most": sol.joint("hinge").turn.max()},
-        duration=0.7, steps=7, vary={"twist": {"stiffness": stiffness}}, start={"hinge": turn}, moving={"hinge": rate},
+        **varied, **asked, threads=2,
+        measure={"tip": samples("tip.z", [0.3, 0.7]), "most": largest("hinge.turn"), "rate": final("hinge.turn_rate")},
     )  # fmt: skip
-    assert many["tip"].shape == (3, 3)
+    assert many.way == "all of 4 in the compiled loop"
     assert many.good.all()
-    for k in range(3):
-        m.change("twist", stiffness=float(stiffness[k]))
-        m.start_near({"hinge": turn[k]})
-        m.start_moving({"hinge": rate[k]})
-        sol = m.simulate(duration=0.7, steps=7)
-        assert np.array_equal(sol.point("tip").place[-1], many["tip"][k])
+    for k in range(4):
+        for name, changes in varied["vary"].items():
+            m.change(name, **{key: values[k] for key, values in changes.items()})
+        m.start_near({name: values[k] for name, values in varied.get("start", {}).items()})
+        m.start_moving({"hinge": varied["moving"]["hinge"][k]})
+        sol = m.simulate(**asked)
+        assert np.allclose(many["tip"][k], sol.point("tip").place[[3, 7], 2], rtol=0, atol=1e-12)
+        assert many["most"][k] == pytest.approx(sol.joint("hinge").turn.max(), rel=1e-12)
+        assert many["rate"][k] == pytest.approx(sol.joint("hinge").turn_rate[-1], rel=1e-11)
+
+
+def test_what_no_loop_can_do_is_simulated_one_by_one() -> None:
+    m = pendulum()
+    named = {"tip": final("tip.z"), "bearing": largest("hinge.fz")}
+    both = [
+        m.simulate_many(0.7, **VARIED, steps=7, measure=measure)
+        for measure in (
+            named,
+            lambda sol: {"tip": sol.point("tip").z[-1], "bearing": sol.joint("hinge").force[:, 2].max()},
+            lambda sol: {"tip": sol.point("tip").place[-1]},
+        )
+    ]
+    assert both[0].way == "4 one by one ('hinge.fz' is that of a single solution)"
+    assert both[1].way == "4 one by one (measure is a function of a solution)"
+    assert np.array_equal(both[0]["tip"], both[1]["tip"])
+    assert np.array_equal(both[0]["bearing"], both[1]["bearing"])
+    assert both[2]["tip"].shape == (4, 3)
+    longer = m.simulate_many(0.5, vary={"rod": {"end": [(1, 0, 0), (2, 0, 0)]}}, steps=5, measure={"x": final("rod.x")})
+    assert longer.way == "2 one by one (places on bodies depend on what varies)"
+
+
+def test_many_simulations_that_cannot_be_are_refused_or_have_a_reason() -> None:
+    m, measure = pendulum(), {"tip": final("tip.z")}
     with pytest.raises(ModelError, match="numbers of values differ"):
-        m.simulate_many(lambda sol: {}, duration=1.0, vary={"twist": {"stiffness": [1, 2]}}, start={"hinge": [1, 2, 3]})
+        m.simulate_many(1.0, vary={"twist": {"stiffness": [1, 2]}}, start={"hinge": [1, 2, 3]}, measure=measure)
     with pytest.raises(ModelError, match="no argument 'stifness'"):
-        m.simulate_many(lambda sol: {}, duration=1.0, vary={"twist": {"stifness": [1, 2]}})
+        m.simulate_many(1.0, vary={"twist": {"stifness": [1, 2]}}, measure=measure)
+    with pytest.raises(ModelError, match=r"no quantity 'tip\.zz', did you mean 'tip\.z'"):
+        m.simulate_many(1.0, vary={"twist": {"stiffness": [1, 2]}}, measure={"tip": final("tip.zz")})
+    some = m.simulate_many(0.1, vary={"rod": {"mass": [1.0, -1.0, 2.0]}}, steps=2, measure=measure)
+    assert some.good.tolist() == [True, False, True]
+    assert "mass is -1" in str(some.reason[1])
+    assert np.isnan(some["tip"][1])
 
 
 def test_files_that_are_none_are_refused(tmp_path: Path) -> None:

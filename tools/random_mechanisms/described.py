@@ -273,6 +273,7 @@ def on_a_base(m: Mechanism, world: Pose, mass: float = 0.0) -> Mechanism:
             "gravitation",
             "contact",
             "friction",
+            "double_acting_cylinder",
         ):
             out.forces[name] = _rehosted(force, out.forces[name], base)
             if force.kind.name == "bushing":

@@ -237,10 +237,10 @@ def shuffled(m: Mechanism, rng: np.random.Generator) -> Mechanism:
 def exchanged(m: Mechanism, rng: np.random.Generator) -> Mechanism:
     """First and second marker exchanged of half of what allows it."""
     out = seen_from(m, {})
-    rubbed = {force.params.get("joint") for force in out.forces.values()}
+    used = {force.params.get(key) for force in out.forces.values() for key in ("joint", "valve")}
     for table in (out.joints, out.drivers, out.forces, out.contacts):
         for name, joint in table.items():
-            if rng.random() < 0.5 and name not in rubbed:
+            if rng.random() < 0.5 and name not in used:
                 table[name] = _turned_round(joint)
     return out
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -14,14 +15,21 @@ from mbsd.derivatives.driven.tangents import Inverse, Tangent, has_kinks, tangen
 from mbsd.derivatives.numbers.terms import Along, Terms, along_of, terms_of
 from mbsd.derivatives.numbers.variants import KINKED, STEP, Variant, Variants, Variation, models_of
 from mbsd.derivatives.refused_motions import refuse_parted
+from mbsd.kinematics.march import march_along
 from mbsd.kinematics.pose.close import assemble
-from mbsd.kinematics.states_along import states_along
+from mbsd.kinematics.prepared import prepare
+from mbsd.kinematics.states_along import Motion, close_times, states_along
+from mbsd.kinematics.sweep import sweep
 from mbsd.model.mechanism import Model
 from mbsd.numbers.names import Number
 from mbsd.results.solution import Solution
 
 FAR = 1e-3
 """A variant's motion is no farther than this from the motion itself, in sizes and rad."""
+
+
+OF_STATES = 1e-3
+"""Part of a number by which it changes where states of forces are followed: they are less exact than poses."""
 
 
 class SweepTangents:
@@ -35,7 +43,7 @@ class SweepTangents:
         rows, unknowns = len(sol.packed.ws.phi), sol.packed.coordinates
         if rows < unknowns:
             raise ModelError(f"{m.name}: derivatives of a sweep need a driver for every freedom")
-        inverse = Inverse(self.terms, self.along, bool(sol.mobility.redundant_rows))
+        inverse = self.inverse = Inverse(self.terms, self.along, bool(sol.mobility.redundant_rows))
         usual = STEP * (KINKED if has_kinks(self.terms) else 1.0)
         self.values: dict[str, np.ndarray] = {}
         self.slopes: dict[str, np.ndarray] = {}
@@ -49,7 +57,9 @@ class SweepTangents:
             if far > FAR:  # near a toggle a small change of a length is a large one of the pose
                 variants = variation.of(number, step=usual * FAR / far)
             if sol.states is not None:
-                tangent_of.states = self._states(variants, tangent_of)
+                wide = variation.of(number, step=usual * max(1.0, min(OF_STATES / usual, FAR / max(far, 1e-300))))
+                tangent_of.states = self._states(wide, tangent_of)
+                tangent_of.lam += inverse.multipliers(self._loads(tangent_of.states, variants.step), None)
             self.variants.append(variants)
             self.tangents.append(tangent_of)
 
@@ -75,16 +85,43 @@ class SweepTangents:
 
     def _states(self, variants: Variants, tangent_of: Tangent) -> np.ndarray:
         """(T, s) how states of forces change: they are followed along the motion of each variant."""
+        along, inverse = self._close
+        if along is not self.along:
+            tangent_of = tangent(self.terms, along, inverse, variants)
+        rows = np.searchsorted(along.t, self.t)
 
         def states(variant: Variant) -> np.ndarray:
             h = variant.offset * variants.step
-            motion = zip(self.along.parts(), (tangent_of.q, tangent_of.v, tangent_of.a), strict=True)
+            motion = zip(along.parts(), (tangent_of.q, tangent_of.v, tangent_of.a), strict=True)
             moved = [part + h * slope for part, slope in motion]
-            out = states_along(variant.terms.packed, self.along.t, *moved)
+            out = states_along(variant.terms.packed, along.t, *moved)
             assert out is not None
-            return out
+            return out[rows]
 
         return variants.slope(states)
+
+    def _loads(self, change: np.ndarray, step: float) -> np.ndarray:
+        """(T, 3 nb) how loads change as states do by ``change`` (T, s) times a number, which goes a step both ways."""
+        assert self.along.states is not None
+        there, here = (
+            self.terms.applied(replace(self.along, states=self.along.states + side * step * change)) for side in (1, -1)
+        )
+        return (there - here) / (2.0 * step)
+
+    @cached_property
+    def _close(self) -> tuple[Along, Inverse]:
+        """The motion at times between which quintics miss no pose, and its inverse Jacobians."""
+        ready = prepare(self.m, float(self.t[0]), float(self.t[-1]))
+
+        def solve(times: np.ndarray) -> Motion:
+            march = march_along(ready, times)
+            return march.q, march.v, march.a
+
+        times = close_times(self.sol.packed, self.t, solve)
+        if len(times) == len(self.t):
+            return self.along, self.inverse
+        along = along_of(sweep(self.m, None, 1, times))
+        return along, Inverse(self.terms, along, self.inverse.redundant)
 
 
 def displaced(

@@ -19,7 +19,6 @@ from mbsd.arrays.laws import pack_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.derivatives.driven.differences import accelerate_along, close, combine
 from mbsd.derivatives.driven.tangents import (
-    LOOSE,
     along_directions,
     by_numbers,
     combined,
@@ -35,6 +34,7 @@ from mbsd.derivatives.free.explicit_time import Stencil, stencil_at
 from mbsd.derivatives.free.linear_motion import NODES, ByTime, carried
 from mbsd.derivatives.numbers.terms import Along, Change, Left, Terms, stacked
 from mbsd.derivatives.numbers.variants import Variants
+from mbsd.kinematics.pose.mobility import better_rows
 
 REACH = 1e-5
 """How far differences along a direction go: sizes, rad, parts of the fastest speed."""
@@ -55,6 +55,8 @@ class Stretch:
     """(T, m, 6) J."""
     rows: np.ndarray
     """Independent rows that hold."""
+    holding: np.ndarray
+    """All rows that hold."""
     dependent: list[tuple[int, int]]
     """Rows of sliding and of the gap whose normal force makes their friction."""
     asked: np.ndarray
@@ -116,7 +118,7 @@ def slight_changes(f: int, fastest: float, sizes: np.ndarray) -> np.ndarray:
 def at_rows(terms: Terms, stretch: Stretch, every: list[Variants], basis: np.ndarray, y: np.ndarray) -> Tangents:
     """Tangents at all times of a stretch, from s = Z q' for Z = ``basis`` (f, n) and s' there: y (T, 2 f, P)."""
     whole = FreeTangents(terms, stretch, every)
-    return _Piece(whole, 0, basis, whole.inverses(basis)).at_all(y)
+    return _Piece(whole, 0, whole.rows, basis, whole.inverses(basis)).at_all(y)
 
 
 class FreeTangents:
@@ -133,46 +135,57 @@ class FreeTangents:
         refuse_large(terms, len(self.along.t))
         self.scale = packed.column_scale()
         self.jac = packed.spread(stretch.compact)
-        self.held = self.jac[:, self.rows]
+        self.holding = stretch.holding
 
     def carry(self, q: np.ndarray, v: np.ndarray) -> Carried:
         """Tangents where they are asked for, and at the end."""
         count, first = len(self.along.t), 0
         parts: list[Carried] = []
         while first < count - 1:
-            basis, inverse = self._basis(first)
-            parts.append(_Piece(self, first, basis, inverse).carry(q, v))
+            rows = self._rows(first)
+            basis, inverse = self._basis(first, rows)
+            parts.append(_Piece(self, first, rows, basis, inverse).carry(q, v))
             q, v = parts[-1].q, parts[-1].v
             first += len(inverse) - 1
         errors, off = np.concatenate([part.errors for part in parts]), max(part.off for part in parts)
         return Carried(joined([part.asked for part in parts]), q, v, parts[-1].lam, errors, off)
 
-    def _basis(self, first: int) -> tuple[np.ndarray, np.ndarray]:
+    def _rows(self, first: int) -> np.ndarray:
+        """Return the rows that hold from node ``first`` on: those farthest from a toggle, where some repeat others.
+
+        Rods of a platform that repeat each other have toggles, if one row is left out, that the platform has not.
+        """
+        if len(self.rows) == len(self.holding) or self.dependent:
+            return self.rows
+        scaled = self.jac[first] * self.terms.packed.row_scale()[:, None] * self.scale
+        better = better_rows(scaled[self.holding], np.searchsorted(self.holding, self.rows), 1.0)
+        return self.rows if better is None else self.holding[better]
+
+    def _basis(self, first: int, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Z (f, n) at node ``first``, and inverses of [J; Z] up to the last node, whole steps on, that it serves."""
-        scaled, count = self.held[first] * self.scale, len(self.along.t) - first
+        scaled, count = self.jac[first, rows] * self.scale, len(self.along.t) - first
         if not len(scaled):
             return np.diag(1.0 / self.scale), np.broadcast_to(np.diag(self.scale), (count, *2 * self.scale.shape))
         size = np.abs(scaled).max(axis=1, keepdims=True)
-        _, singular, right = np.linalg.svd(scaled / size)
-        rank = int((singular > LOOSE * singular.max(initial=0.0)).sum())
-        inverse, norms = self._inverted(first, right[rank:])
+        beyond = np.linalg.svd(scaled / size)[2][len(scaled) :]
+        inverse, norms = self._inverted(first, rows, beyond)
         # of unit rows: its smallest singular value falls as motions turn away from the basis
         size = np.abs(inverse).max(axis=(1, 2))
         far = size > WORST * size[0]
         edges = np.flatnonzero(self.nodes[first:])[::NODES]
         last = int(edges[max(1, np.searchsorted(edges, np.argmax(far)) - 1)] if far.any() else edges[-1])
-        return right[rank:] / self.scale, self._in_sizes(inverse[: last + 1], norms[: last + 1])
+        return beyond / self.scale, self._in_sizes(inverse[: last + 1], norms[: last + 1])
 
     def inverses(self, basis: np.ndarray) -> np.ndarray:
         """(T, n, n) inverses of [J; Z], Z = ``basis`` (f, n), at all times."""
-        return self._in_sizes(*self._inverted(0, basis * self.scale))
+        return self._in_sizes(*self._inverted(0, self.rows, basis * self.scale))
 
-    def _inverted(self, first: int, scaled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _inverted(self, first: int, rows: np.ndarray, scaled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Inverses of [J; Z] in sizes, J by unit rows, from node ``first`` on, and what makes rows of J unit rows."""
         rank = len(self.scale) - len(scaled)
         square = np.empty((len(self.along.t) - first, len(self.scale), len(self.scale)))
         square[:, rank:] = scaled
-        np.multiply(self.held[first:], self.scale, out=square[:, :rank])
+        np.multiply(self.jac[first:, rows], self.scale, out=square[:, :rank])
         norms = np.maximum(np.sqrt(np.einsum("trn,trn->tr", square[:, :rank], square[:, :rank])), 1e-300)
         square[:, :rank] /= norms[..., None]
         return np.linalg.inv(square), norms
@@ -186,16 +199,18 @@ class FreeTangents:
 class _Piece:
     """Nodes with one Z."""
 
-    def __init__(self, whole: FreeTangents, first: int, basis: np.ndarray, inverse: np.ndarray) -> None:
+    def __init__(
+        self, whole: FreeTangents, first: int, rows: np.ndarray, basis: np.ndarray, inverse: np.ndarray
+    ) -> None:
         at = slice(first, first + len(inverse))
-        self.terms, self.every, self.rows, self.dependent = whole.terms, whole.every, whole.rows, whole.dependent
+        self.terms, self.every, self.rows, self.dependent = whole.terms, whole.every, rows, whole.dependent
         self.along, self.basis = whole.along.take(at), basis
         self.own = None if whole.own is None else whole.own.each(lambda part: part[:, at])
         self.compact = whole.compact[at]
         asked = whole.asked[at].copy()
         asked[0] &= first == 0
         self.asked, self.nodes = np.flatnonzero(asked), np.flatnonzero(whole.nodes[at])
-        self.jac, self.held = whole.jac[at], whole.held[at]
+        self.jac, self.held = whole.jac[at], whole.jac[at][:, rows]
         self.fixed = np.ascontiguousarray(inverse[:, :, : len(self.rows)])
         self.free = np.ascontiguousarray(inverse[:, :, len(self.rows) :])
         self.f, self.n = len(basis), inverse.shape[1]

@@ -153,6 +153,31 @@ def unshared(terms: Terms, along: Along, compact: np.ndarray, ways: Sequence[int
     return lam
 
 
+def shared_least(terms: Terms, along: Along, compact: np.ndarray, rank: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return accelerations (T, 3 nb) and the least multipliers (T, m) of a stretch whose rows repeat each other.
+
+    ``rank`` of the rows that hold are independent. A simulation shares loads among a choice of them, which grow without
+    bound near poses where that choice alone is singular. With J = U S V^T of these rows and Z their null space,
+
+        a = J^+ gamma + Z u,   Z^T M Z u = Z^T (Q - M J^+ gamma),   lam = J^T^+ (Q - M a)
+    """
+    assert along.held is not None
+    packed, held, (_, gamma, _) = terms.packed, np.flatnonzero(along.held[0]), terms.rows(along)
+    load, mass = (terms.forces(along, compact) + terms.weight)[:, 3:], terms.inertia[3:]
+    size, unit = packed.column_scale(), packed.row_scale()[held]
+    left, singular, right = np.linalg.svd(packed.spread(compact)[:, held] * unit[:, None] * size)
+    across, onto = left[:, :, :rank].transpose(0, 2, 1) / singular[:, :rank, None], right[:, :rank]
+    free = right[:, rank:] * size
+    a = size * np.einsum("tkn,tkr,tr->tn", onto, across, gamma[:, held] * unit)
+    pushed = np.einsum("tfn,tn->tf", free, load - mass * a)
+    a += np.einsum(
+        "tfn,tf->tn", free, np.linalg.solve((free * mass) @ free.transpose(0, 2, 1), pushed[..., None])[..., 0]
+    )
+    lam = np.zeros_like(along.lam)
+    lam[:, held] = unit * np.einsum("tkr,tkn,tn->tr", across, onto, size * (load - mass * a))
+    return np.pad(a, ((0, 0), (3, 0))), lam
+
+
 def times_moved(
     terms: Terms, every: Sequence[Variants], along: Along, row: int, guards: Sequence[Guard], tangent: End
 ) -> np.ndarray:

@@ -210,7 +210,7 @@ class IndependentTangents:
     ) -> Tangents:
         """Tangents in reference coordinates at outputs (R,), whose compact J is (R, m, 6)."""
         everywhere = np.ones(len(along.t), bool)
-        stretch = Stretch(along, compact, rows, [], everywhere, everywhere)
+        stretch = Stretch(along, compact, rows, rows, [], everywhere, everywhere)
         return at_rows(terms, stretch, variants, self.basis[:, 3:], line.at(along.t))
 
     def _slope(self, p: int, here: States, rates: np.ndarray) -> np.ndarray:

@@ -116,13 +116,12 @@ def simulations(
 ) -> Simulations:
     """Measures of all designs; see :meth:`mbsd.mechanism.Mechanism.simulate_many`."""
     m, grid = designs.m, asked.times
-    if threads is not None and whole_number(f"{m.name}: threads", threads) > MOST_THREADS:
-        raise ModelError(f"{m.name}: threads is {shown(threads)}; it must be {MOST_THREADS} at most")
+    refuse_threads(m.name, threads)
     progress = users_progress(f"{m.name}: progress", progress, PART)
     measures = checked_measures(m, measure, grid)
     quantities = {} if callable(measures) else quantities_of(designs, measures)
     why = _why_single(designs, asked, measures, quantities)
-    width = 1 if callable(measures) else sum(column[0].size for column in _empty(measures, 1).values())
+    width = 1 if callable(measures) else sum(column[0].size for column in empty_columns(measures, 1).values())
     numbers = (3 * width + NUMBERS_OF_A_ROW) * designs.count
     check_memory(f"{m.name}: {designs.count} simulations", numbers, "Take fewer at once")
     if callable(measures):
@@ -139,12 +138,20 @@ def simulations(
         any(quantity.reactive for quantity in quantities.values()),
     )
     with quiet():  # here, as threads share what is shown
-        done = _all(work, len(m.bodies), min(threads or cores(), designs.count), progress)
-    table = done.columns if callable(measures) else _empty(measures, designs.count) | done.columns
+        numbers = len(grid) * NUMBERS_OF_A_BODY * len(m.bodies)
+        most = min(threads or cores(), designs.count)
+        done = in_chunks(lambda: Worker(work), designs.count, numbers, most, why is None, work.stop, progress)
+    table = done.columns if callable(measures) else empty_columns(measures, designs.count) | done.columns
     return Simulations(table, done.reasons, done.alone, work.note)
 
 
-def _empty(measures: Mapping[str, Measure], count: int) -> dict[str, np.ndarray]:
+def refuse_threads(name: str, threads: int | None) -> None:
+    """Raise ModelError for what is no number of threads."""
+    if threads is not None and whole_number(f"{name}: threads", threads) > MOST_THREADS:
+        raise ModelError(f"{name}: threads is {shown(threads)}; it must be {MOST_THREADS} at most")
+
+
+def empty_columns(measures: Mapping[str, Measure], count: int) -> dict[str, np.ndarray]:
     """All columns, without numbers."""
     shapes = {column: each.shape for name, each in measures.items() for column in each.columns(name)}
     return {column: np.full((count, *shape), np.nan) for column, shape in shapes.items()}
@@ -237,9 +244,15 @@ def _why_single(designs: Designs, asked: Request, measures: Any, quantities: Map
     return None
 
 
-def _all(work: Work, bodies: int, threads: int, progress: Callable[[float], None] | None) -> Done:
-    """All chunks, in order. This thread does none, so that it hears Ctrl-C at once."""
-    count, numbers = work.designs.count, len(work.asked.times) * NUMBERS_OF_A_BODY * bodies
+def in_chunks(
+    worker: Callable[[], Callable[[range], Done]], count: int, numbers: int, threads: int, at_once: bool,
+    stop: np.ndarray, progress: Callable[[float], None] | None,
+) -> Done:  # fmt: skip
+    """Return all rows in order, chunk by chunk, each thread with a worker of its own; not ``at_once``: in one thread.
+
+    ``numbers``: those of a row's outputs. ``stop`` (1,) is set where an error ends it. This thread does no chunk, so
+    that it hears Ctrl-C at once.
+    """
     most = min(max(AT_ONCE, count // (CHUNKS * threads)), MOST_AT_ONCE)
     size = max(1, min(most, NUMBERS_AT_ONCE // numbers, -(-count // threads)))
     chunks = [range(1), *(range(first, min(first + size, count)) for first in range(1, count, size))]
@@ -247,11 +260,11 @@ def _all(work: Work, bodies: int, threads: int, progress: Callable[[float], None
 
     def part(rows: range) -> Done:
         if not hasattr(own, "worker"):
-            own.worker = Worker(work)
+            own.worker = worker()
         return own.worker(rows)
 
     finished, ended = 0, SimpleQueue[Future[Done]]()
-    with ThreadPoolExecutor(threads if work.why is None else 1) as pool:
+    with ThreadPoolExecutor(threads if at_once else 1) as pool:
         futures: dict[Future[Done], int] = {}
         try:
             for some in (chunks[:1], chunks[1:]):  # the first compiles what the others need
@@ -266,7 +279,7 @@ def _all(work: Work, bodies: int, threads: int, progress: Callable[[float], None
                     if progress is not None:
                         progress(finished / count)
         except BaseException:
-            work.stop[0] = 1
+            stop[0] = 1
             pool.shutdown(wait=False, cancel_futures=True)
             raise
     return joined([future.result() for future in futures])

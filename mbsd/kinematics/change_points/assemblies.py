@@ -36,7 +36,9 @@ from mbsd.arrays.efforts_beside import lagrange
 from mbsd.arrays.packing import Packed
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics import newton
-from mbsd.kinematics.elimination import Elimination, Factors
+from mbsd.kinematics.elimination import Elimination, Factors, plan
+from mbsd.kinematics.pose.mobility import best_rows
+from mbsd.kinematics.prepared import sample_jacobians
 
 APART = np.array([1.0, 1.3, 1.6, 1.9, 2.2, 2.5])
 """Distances of the poses beside a change point, in ``WAYS``."""
@@ -121,22 +123,35 @@ class Solver:
         packed.specials.check()
         return (q, sign * v, a, determinant) if status == newton.DONE else None
 
+    def exchanged(self, q: np.ndarray, drive: np.ndarray) -> Solver | None:
+        """Return a solver with rows that are further from dependent at a pose q (3 nb,); None if there are none."""
+        residual_and_jacobian(self.packed.system, q, drive, self.packed.ws)
+        kept = best_rows(self.packed, self.sequence.rows)
+        if kept is None:
+            return None
+        return Solver(self.packed, *plan(sample_jacobians(self.packed), kept, self.packed.system.row_body))
+
     def extent(self, change: np.ndarray) -> float:
         """Return largest part of changes (..., 3 nb) of poses, lengths in sizes."""
         return float(np.abs(change[..., 3:] / self.packed.column_scale()).max(initial=0.0))
 
-    def gap(self, way: Way, q: np.ndarray, p: float) -> float:
-        """Return largest residual at a pose q (3 nb,), in sizes and rad, of the rows that are solved."""
-        drive = way.drives(np.array([p]))[0]
-        residual_and_jacobian(self.packed.system, q, drive, self.packed.ws)
-        rows = self.sequence.rows.astype(np.int64)
-        return float(np.abs(self.packed.ws.phi[rows] * self.packed.row_scale()[rows]).max())
+    def start_from(self, row: int) -> None:
+        """Get ready for ways from the pose of a step."""
 
-    def jacobian(self, way: Way, q: np.ndarray, p: float) -> np.ndarray:
-        """Return (n, n) dimensionless Jacobian of the rows that are solved, at a pose q (3 nb,)."""
-        residual_and_jacobian(self.packed.system, q, way.drives(np.array([p]))[0], self.packed.ws)
-        rows = self.sequence.rows.astype(np.int64)
-        return self.packed.jacobian()[rows] * self.packed.row_scale()[rows, None] * self.packed.column_scale()
+    def gap(self, way: Way, q: np.ndarray, p: float) -> float:
+        """Return largest residual at a pose q, in sizes and rad, of the rows that are solved."""
+        return float(np.abs(self.rows_at(way, q, p)[0]).max())
+
+    def rows_at(self, way: Way, q: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return dimensionless Phi (n,) and J (n, n) of the rows that are solved, at a pose q (3 nb,)."""
+        packed, rows = self.packed, self.sequence.rows.astype(np.int64)
+        residual_and_jacobian(packed.system, q, way.drives(np.array([p]))[0], packed.ws)
+        scale = packed.row_scale()[rows]
+        return packed.ws.phi[rows] * scale, packed.jacobian()[rows] * scale[:, None] * packed.column_scale()
+
+    def moved(self, q: np.ndarray, change: np.ndarray) -> np.ndarray:
+        """Return a pose q (3 nb,) moved by ``change`` (n,), in sizes and rad."""
+        return q + np.append(np.zeros(3), change * self.packed.column_scale())
 
 
 @dataclass
@@ -275,18 +290,16 @@ def other_assembly(solver: Solver, way: Way, smooth: Assembly) -> Assembly | Non
     """Return the motion on the assembly that meets ``smooth`` at p = 0; None unless there is just one."""
     p = 2.0 * GAP
     pose = smooth.evaluate(np.array([p]))[0, 0]
-    scale = np.concatenate([np.ones(3), solver.packed.column_scale()])
-    jac = solver.jacobian(way, pose, p)
-    left, values, right = np.linalg.svd(jac)
+    left, values, right = np.linalg.svd(solver.rows_at(way, pose, p)[1])
     if len(values) > 1 and values[-2] < 4.0 * values[-1]:
         return None
-    w, u = left[:, -1], np.concatenate([np.zeros(3), right[-1]])
+    w, u = left[:, -1], right[-1]
     step = 1e-4
-    ahead, back = (solver.jacobian(way, pose + sign * step * scale * u, p) for sign in (1.0, -1.0))
-    bend = 0.25 * float(w @ (ahead - back) @ u[3:]) / step
+    ahead, back = (solver.rows_at(way, solver.moved(pose, sign * step * u), p)[1] for sign in (1.0, -1.0))
+    bend = 0.25 * float(w @ (ahead - back) @ u) / step
     if not abs(bend) * IN_SIGHT > 1e-3 * values[-1]:
         return None
-    started = pose - values[-1] / bend * scale * u
+    started = solver.moved(pose, -values[-1] / bend * u)
     meeting = solver.walk(way, started, np.array([p]))
     if meeting is None or solver.extent(meeting[0][0] - pose) < 0.3 * abs(values[-1] / bend):
         return None

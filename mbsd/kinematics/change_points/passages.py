@@ -133,35 +133,49 @@ class Passages:
         self.passages.append(passage)
         return passage
 
-    def pass_ends(self, q: np.ndarray, v: np.ndarray, determinant: np.ndarray) -> None:
-        """Find change points that the motion does not reach, but comes near to with its first or last pose."""
+    def solver_at(self, row: int, q: np.ndarray) -> Solver | None:
+        """Return a solver with rows that depend less on each other at a step of q (T, 3 nb), None if there is none."""
+        self.solver.start_from(row)
+        return self.solver.exchanged(q[row], self.steps.drives[row])
+
+    def pass_ends(self, q: np.ndarray, v: np.ndarray, determinant: np.ndarray, is_redundant: bool = False) -> None:
+        """Find change points that the motion does not reach, but comes near to with its first or last pose.
+
+        Where joints repeat others, rows that alone are singular near there are exchanged before.
+        """
         largest = np.abs(determinant).max(axis=0, initial=0.0)
         for row in dict.fromkeys((0, len(q) - 1)):
             time = self.steps.times[row]
             is_known = any(passage.start <= time <= passage.end for passage in self.passages)
             if not is_known and (len(q) == 1 or (np.abs(determinant[row]) < NEAR_END * largest).any()):
+                self.solver = (self.solver_at(row, q) if is_redundant else None) or self.solver
                 meeting = self._meeting(row, q[row], v[row])
                 if meeting is not None:
                     self.passages.append(self._in_time(row, *meeting))
 
-    def fill(self, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the arrays (T, 3 nb) of all steps, with poses of passages near change points.
+    def fill(self, arrays: dict[str, np.ndarray], poses: tuple[str, str, str]) -> list[np.ndarray]:
+        """Fill ``poses`` among ``arrays`` (T, ...) near change points, and return at which rows.
 
-        Raises ModelError where the motion was to switch at a time at which it passes no change point.
+        Steps that were left out are put back, with zeros in all other arrays.
         """
         steps = self.steps
         for passage in self.passages:
             if len(passage.left_out):
                 at = steps.restore(passage.left_out)
-                q, v, a = (np.insert(array, at, 0.0, axis=0) for array in (q, v, a))
+                for name, array in arrays.items():
+                    arrays[name] = np.insert(array, at, 0.0, axis=0)
+        filled = []
         for passage in self.passages:
-            rows = passage.covers(steps.times)
-            q[rows], v[rows], a[rows] = passage.motion(steps.times[rows])
-        return q, v, a
+            rows = np.flatnonzero(passage.covers(steps.times))
+            for name, part in zip(poses, passage.motion(steps.times[rows]), strict=True):
+                arrays[name][rows] = part
+            filled.append(rows)
+        return filled
 
     def _meeting(self, row: int, pose: np.ndarray, v: np.ndarray) -> tuple[Way, Assembly] | None:
         """Return the way past the change point near a pose, and the smooth motion on it; None without one."""
         steps, solver, time = self.steps, self.solver, float(self.steps.times[row])
+        solver.start_from(row)
         way = way_from(steps.packed, steps.drives, steps.drives[row], time, v, solver, pose)
         ahead = None if way is None else find_ahead(solver, way, pose)
         if way is None or ahead is None:

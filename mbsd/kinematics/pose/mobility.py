@@ -27,6 +27,8 @@ from mbsd.results.views import Mobility
 
 BETTER = 4.0
 """Rows are exchanged for others whose least singular value is this many times larger."""
+CLEARER = 30.0
+"""The same before a motion begins: rows that are near a toggle of their own are left for others."""
 
 
 _MOBILITY: Kept[Mobility] = Kept()
@@ -151,30 +153,42 @@ def _chosen(packed: Packed, q: np.ndarray, time: float, joints: Mobility) -> lis
             f"{packed.name}: the start pose at t = {time:.6g} s is singular (a toggle or change point): "
             "the drivers do not fix the motion here. Start a little before or after it, or drive another body."
         )
-    return kept
+    return clear_rows(packed, q, kept)
+
+
+def clear_rows(packed: Packed, q: np.ndarray, kept: list[int]) -> list[int]:
+    """Return ``kept`` rows at q (3 nb,), or others in their place where they alone are near a toggle.
+
+    Joints that repeat each other let a choice of rows be singular at a pose at which all of them are not.
+    """
+    if not 0 < len(kept) < len(packed.ws.phi):
+        return kept
+    clear = better_rows(scaled_jacobian(packed, q), kept, CLEARER)
+    return kept if clear is None else clear.tolist()
 
 
 def best_rows(packed: Packed, known: np.ndarray) -> np.ndarray | None:
     """Return (n,) least dependent rows of the last J; None if ``known`` (n,) are nearly as good.
 
-    Where joints repeat each other, rows that serve at one pose may be dependent at another.
+    Where joints repeat each other, rows that serve at one pose may be dependent at another. Near a change point one
+    singular value vanishes whatever rows are kept, and a second one for some of them: there they pass two at once.
     """
-    return better_rows(packed.jacobian() * packed.row_scale()[:, None] * packed.column_scale(), known)
+    return better_rows(packed.jacobian() * packed.row_scale()[:, None] * packed.column_scale(), known, least=2)
 
 
-def better_rows(jac: np.ndarray, known: Sequence[int] | np.ndarray, better: float = BETTER) -> np.ndarray | None:
-    """Return (r,) rows of jac (m, n), its least singular value ``better`` times that of ``known`` (r,).
+def better_rows(
+    jac: np.ndarray, known: Sequence[int] | np.ndarray, better: float = BETTER, least: int = 1
+) -> np.ndarray | None:
+    """Return (r,) rows of jac (m, n) that are further from dependent than ``known`` (r,); None if there are none.
 
-    jac is dimensionless.
-
-    None if there are none. Source: pivoted QR.
+    One of their ``least`` smallest singular values is ``better`` times that of ``known``. jac is dimensionless. Source:
+    pivoted QR.
     """
     from scipy.linalg import qr, svdvals
 
     chosen = np.sort(qr(jac.T, mode="r", pivoting=True)[-1][: len(known)])
-    if svdvals(jac[chosen])[-1] <= better * svdvals(jac[known])[-1]:
-        return None
-    return chosen
+    own, others = (np.asarray(svdvals(jac[rows]))[-least:] for rows in (known, chosen))
+    return chosen if (others > better * own).any() else None
 
 
 def _best_rows(packed: Packed, q: np.ndarray) -> tuple[list[int], list[int], np.ndarray]:

@@ -159,10 +159,11 @@ def moved(q: np.ndarray, delta: np.ndarray) -> np.ndarray:
     out = q.copy()
     step, pose = delta.reshape(-1, 6), out[3:].reshape(-1, 7)
     pose[:, :3] += step[:, :3]
-    e, half = pose[:, 3:].copy(), 0.5 * step[:, 3:]
-    pose[:, 3] -= (half * e[:, 1:]).sum(axis=1)
-    pose[:, 4:] += e[:, :1] * half + np.cross(half, e[:, 1:])
-    pose[:, 3:] /= np.linalg.norm(pose[:, 3:], axis=1)[:, None]
+    w, x, y, z = pose[:, 3:].T.copy()
+    a, b, c = 0.5 * step[:, 3:].T
+    turned = np.stack([w - a * x - b * y - c * z, x + a * w + b * z - c * y, y + b * w + c * x - a * z,
+                       z + c * w + a * y - b * x])  # fmt: skip
+    pose[:, 3:] = (turned / np.sqrt((turned * turned).sum(axis=0))).T
     return out
 
 

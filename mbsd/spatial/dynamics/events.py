@@ -47,7 +47,7 @@ class Events:
         self.rows: list[tuple[Any, ...]] = []
         """Time, state, derivative, multipliers, work and counted turns of each output beside events."""
         span = end - float(state.clock[TIME])
-        self.contacts = _without_contacts(state, self._arrays(len(state.y[0]), longest, span))
+        self.contacts = no_contacts(state, self._arrays(len(state.y[0]), longest, span))
         self.contacts.clock[arrays.PAUSES] = arrays.BEFORE_AND_AFTER if rows else arrays.AFTER
 
     def follow(self, advance: Callable[[Any, int], int], state: State, end: float, often: bool) -> int:
@@ -175,7 +175,12 @@ class Events:
         return np.concatenate([own @ (np.array(marker.place) - body.com), euler_parameters(own @ marker.axes)])
 
 
-def _without_contacts(state: State, events: SpaceEvents) -> arrays.Contacts:
+def no_events() -> SpaceEvents:
+    """Return arrays of no event, for loops that look for none."""
+    return SpaceEvents(*(np.zeros(0) for _ in SpaceEvents._fields))
+
+
+def no_contacts(state: State, events: SpaceEvents) -> arrays.Contacts:
     """Return arrays of the loop of events for a mechanism whose rows always hold."""
     n, rows = state.y.shape[1], len(state.lam)
     none, whole, square = np.zeros(0), np.zeros((0, 2), np.int64), np.zeros((0, 0))

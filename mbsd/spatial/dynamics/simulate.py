@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -54,17 +54,22 @@ AUTO, REFERENCE, TREE = FORMULATIONS = ("auto", "reference", "tree")
 STEPS = 10**9
 
 
-def simulate(
+def simulate(m: Model, event_rows: bool, asked: Mapping[str, Any]) -> Solution:
+    """Return a simulation; see :meth:`mbsd.spatial.mechanism.Mechanism.simulate`. ``asked``: see request_for."""
+    return Run(m, event_rows=event_rows, **asked).followed()
+
+
+def request_for(
     m: Model, duration: float | None, steps: int, times: Sequence[float] | np.ndarray | None, tolerance: float,
-    event_rows: bool, formulation: str,
-) -> Solution:  # fmt: skip
-    """Return a simulation; see :meth:`mbsd.spatial.mechanism.Mechanism.simulate`."""
+    formulation: str,
+) -> dict[str, Any]:  # fmt: skip
+    """Return how a mechanism is simulated, as arguments of Run. Raises ModelError for what cannot be asked."""
     same_fields: Any = m
     grid = output_times(same_fields, duration, steps, times)
     refuse_bad_steps(same_fields, grid, tolerance, None)
     if formulation not in FORMULATIONS:
         raise ModelError(f"{m.name}: {no_such('formulation', formulation, FORMULATIONS)}")
-    return Run(m, grid, tolerance, formulation, event_rows).followed()
+    return {"grid": grid, "tolerance": tolerance, "formulation": formulation}
 
 
 @dataclass
@@ -200,21 +205,42 @@ class Run:
             "is singular there, or bodies lack inertia; look at the joints in this pose"
         )
 
+    def joined(self, times: np.ndarray, y: np.ndarray, a: np.ndarray, starts: dict[str, np.ndarray]) -> Solution:
+        """Return R motions of this run's kind behind one another: what it says of frames is (T, R, ...).
+
+        ``y`` (R, T, 2, n) and ``a`` (R, T, n) at ``times`` (T,); ``starts``: turns and slides that differ (R,).
+        """
+        count, parts = len(times), []
+        for part in self._in_world(y.reshape(-1, *y.shape[2:]), a.reshape(-1, a.shape[-1])):
+            parts.append(np.swapaxes(part.reshape(len(y), count, -1), 0, 1))
+        motion = self._motion(times, parts, np.zeros((count, 0)), np.zeros(count))
+        return Solution(
+            self.m, self.packed, motion, np.ones(count, bool), self.mobility, self.laws, {**self.m.starts, **starts}
+        )
+
+    def _in_world(self, y: np.ndarray, a: np.ndarray) -> list[np.ndarray]:
+        """Return q (T, 3 + 7 n), v and a (T, 3 + 6 n) in the world of outputs y (T, 2, n) and a (T, n)."""
+        q, body = np.ascontiguousarray(y[:, 0]), self.packed.freedoms + 3
+        return [q, *(self.coordinates.to_world(q, part[:, :body]) for part in (y[:, 1], a))]
+
+    def _motion(
+        self, times: np.ndarray, parts: list[np.ndarray], turns: np.ndarray, margin: np.ndarray
+    ) -> DrivenMotion:
+        """Return a motion without multipliers from q, v and a in ``parts``."""
+        packed, none, (q, v, a) = self.packed, np.zeros(len(times)), parts
+        return DrivenMotion(
+            times=times, drives=packed.drives(times), stride=none, q=q, dq=q, ddq=q, v=v, a=a, turn=turns,
+            turn_rate=turns, residual=none, margin=margin, determinant=none[:, None],
+            lam=np.zeros((0, len(packed.ws.phi))), wrench=np.zeros((0, len(packed.passive_joints), 6)),
+        )  # fmt: skip
+
     def _solution(self, out: Any, steps: int, happened: tuple[Happening, ...]) -> Solution:
         packed, count = self.packed, len(self.grid)
-        q, body = np.ascontiguousarray(out.y[:, 0]), packed.freedoms + 3
-        v, a = (self.coordinates.to_world(q, part[:, :body]) for part in (out.y[:, 1], out.a))
+        motion = self._motion(self.grid, self._in_world(out.y, out.a), self.turns, out.margin)
         in_tree = isinstance(self.coordinates, TreeCoordinates)
-        held = 0 if in_tree or self.mobility.redundant_rows else count
-        none = np.zeros(count)
-        motion = DrivenMotion(
-            times=self.grid, drives=packed.drives(self.grid), stride=none, q=q, dq=q, ddq=q, v=v, a=a, turn=self.turns,
-            turn_rate=self.turns, residual=none, margin=out.margin, determinant=none[:, None],
-            lam=out.lam if held else np.zeros((0, len(packed.ws.phi))),
-            wrench=np.zeros((held, len(packed.passive_joints), 6)),
-        )  # fmt: skip
-        if held:
-            wrenches_along(packed.system, motion.drives, q, packed.ws, motion.lam, motion.wrench)
+        if not in_tree and not self.mobility.redundant_rows:
+            motion = motion._replace(lam=out.lam, wrench=np.zeros((count, *motion.wrench.shape[1:])))
+            wrenches_along(packed.system, motion.drives, motion.q, packed.ws, motion.lam, motion.wrench)
         return Solution(
             self.m, packed, motion, np.ones(count, bool), self.mobility, self.laws, dict(self.m.starts),
             steps=steps, work=out.work, changes=self.changes, formulation=TREE if in_tree else REFERENCE,

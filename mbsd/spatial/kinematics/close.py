@@ -120,11 +120,11 @@ def close(packed: Packed, q: np.ndarray, drive: np.ndarray, rows: np.ndarray | N
                 break
             part *= 0.5
         else:
+            residual(q)
             break
         q, phi, jac = trial, after, matrix
         if float(np.abs(part * step).max()) <= EXACT:
             break
-    residual(q)
     return q, float(np.abs(phi).max(initial=0.0)) if np.isfinite(phi).all() else np.inf
 
 

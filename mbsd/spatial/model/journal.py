@@ -131,7 +131,7 @@ def call_again(m: Model, call: Call) -> None:
 
 
 def change(m: Model, name: str, values: Mapping[str, Any]) -> None:
-    """Call all methods again, that which added ``name`` with other values. Raises ModelError, then nothing changed."""
+    """Call all methods again, that which added ``name`` with other values; ModelError changes nothing."""
     known = {call.name: call for call in m.calls if call.name and _is_there(m, call)}
     if name not in known:
         raise ModelError(f"{m.name}: {no_such('body, joint, driver, force or event', name, known)}")
@@ -154,7 +154,7 @@ def _is_there(m: Model, call: Call) -> bool:
 
 
 def rebuild(m: Model, calls: list[Call]) -> None:
-    """Build a model again by calls; its bodies stay the objects that they are. Raises ModelError, then as before."""
+    """Build a model again by calls; its bodies stay the same objects. ModelError changes nothing."""
     new = type(m)(m.name, m.gravity)
     before = {name: dict(vars(body)) for name, body in m.bodies.items()}
     try:

@@ -6,7 +6,7 @@ p = r + s,  p' = r' + w x s,  p'' = r'' + w' x s + w x (w x s)
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -33,13 +33,15 @@ class BodyMotion(NamedTuple):
 
 
 def body_motion(b: int, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> BodyMotion:
-    """Return the motion of body b from q (T, 3 + 7 n), v and a (T, 3 + 6 n)."""
+    """Return the motion of body b from q (T, ..., 3 + 7 n), v and a (T, ..., 3 + 6 n)."""
     if b == 0:
-        rest = np.zeros((len(q), 3))
-        return BodyMotion(rest, np.tile([1.0, 0.0, 0.0, 0.0], (len(q), 1)), rest, rest, rest, rest)
+        rest = np.zeros((*q.shape[:-1], 3))
+        turned = np.broadcast_to([1.0, 0.0, 0.0, 0.0], (*q.shape[:-1], 4))
+        return BodyMotion(rest, turned, rest, rest, rest, rest)
     c, d = 7 * b - 4, 6 * b - 3
+    first, second = (slice(at, at + 3) for at in (d, d + 3))
     return BodyMotion(
-        q[:, c : c + 3], q[:, c + 3 : c + 7], v[:, d : d + 3], v[:, d + 3 : d + 6], a[:, d : d + 3], a[:, d + 3 : d + 6]
+        q[..., c : c + 3], q[..., c + 3 : c + 7], v[..., first], v[..., second], a[..., first], a[..., second]
     )
 
 
@@ -64,32 +66,29 @@ def marker_frame(marker: Marker, motion: BodyMotion) -> FrameView:
 
 
 def turns_between(
-    i: FrameView, j: FrameView, times: np.ndarray, begin: float
+    i: FrameView, j: FrameView, times: np.ndarray, begin: Any
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return turn (rad), its rate and acceleration (T,) of frame j against frame i, whose z axes agree.
+    """Return turn (rad), rate and acceleration (T, ...) of frame j against i, whose z axes agree.
 
     Whole turns are counted from step to step, by the rates at both ends; the first is nearest to ``begin`` (rad).
     """
-    x, y, b = i.rotation[:, :, 0], i.rotation[:, :, 1], j.rotation[:, :, 0]
-    raw = np.arctan2((y * b).sum(axis=1), (x * b).sum(axis=1))
-    axis = i.rotation[:, :, 2]
-    rate = (axis * (j.w - i.w)).sum(axis=1)
-    bend = (axis * (j.alpha - i.alpha)).sum(axis=1) + (np.cross(i.w, axis) * (j.w - i.w)).sum(axis=1)
-    led = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(times) * (rate[1:] + rate[:-1]))])
-    turns = np.zeros(len(raw))
-    turns[0] = round((begin - raw[0]) / (2 * math.pi))
-    for k in range(1, len(raw)):
-        guess = raw[k - 1] + 2 * math.pi * turns[k - 1] + led[k] - led[k - 1]
-        turns[k] = round((guess - raw[k]) / (2 * math.pi))
-    return raw + 2 * math.pi * turns, rate, bend
+    x, y, axis = (i.rotation[..., k] for k in range(3))
+    b = j.rotation[..., 0]
+    raw = np.arctan2((y * b).sum(axis=-1), (x * b).sum(axis=-1))
+    rate = (axis * (j.w - i.w)).sum(axis=-1)
+    bend = (axis * (j.alpha - i.alpha)).sum(axis=-1) + (np.cross(i.w, axis) * (j.w - i.w)).sum(axis=-1)
+    led = 0.5 * (np.diff(times) * (rate[1:] + rate[:-1]).T).T
+    whole = np.round((raw[:-1] + led - raw[1:]) / (2 * math.pi))
+    first = np.round((begin - raw[:1]) / (2 * math.pi))
+    return raw + 2 * math.pi * np.cumsum(np.concatenate([first, whole]), axis=0), rate, bend
 
 
 def slides_between(i: FrameView, j: FrameView) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return how far (m) frame j lies along the z axis of frame i, its rate and acceleration (T,)."""
-    axis, d = i.rotation[:, :, 2], j.place - i.place
+    """Return how far (m) frame j lies along the z axis of frame i, its rate and acceleration (T, ...)."""
+    axis, d = i.rotation[..., 2], j.place - i.place
     rate, speed = np.cross(i.w, axis), j.velocity - i.velocity
     bend = np.cross(i.alpha, axis) + np.cross(i.w, rate)
-    value = (axis * d).sum(axis=1)
-    first = (rate * d + axis * speed).sum(axis=1)
-    second = (bend * d + 2 * rate * speed + axis * (j.acceleration - i.acceleration)).sum(axis=1)
+    value = (axis * d).sum(axis=-1)
+    first = (rate * d + axis * speed).sum(axis=-1)
+    second = (bend * d + 2 * rate * speed + axis * (j.acceleration - i.acceleration)).sum(axis=-1)
     return value, first, second

@@ -1,4 +1,4 @@
-"""Reactions along a motion, of least norm where joints repeat each other, and what its equations leave open.
+"""Reactions along a motion, of least norm where joints repeat each other, and its residuals.
 
     J^T lam = Q - M a
     J^T = Q R   =>   lam = R^-1 Q^T (Q - M a)         rows are independent
@@ -10,10 +10,12 @@ Rows of J are dimensionless: a force counts as its moment at one size of the mec
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from mbsd.arrays.efforts_beside import Side, efforts_beside
 from mbsd.equations.laws import Laws
 from mbsd.spatial.arrays.along import loads_along, tabulated
 from mbsd.spatial.arrays.packing import Packed
@@ -23,8 +25,35 @@ JACOBIAN_NUMBERS = 2_000_000
 """Numbers of Jacobians held at once."""
 
 
-def with_reactions(packed: Packed, laws: Laws, motion: Any, redundant: int) -> Any:
+class Beside(NamedTuple):
+    """A motion at poses beside a change point, from which efforts near it follow."""
+
+    side: Side
+    factor: np.ndarray
+    """(N + R,) the determinant of J there, then at the steps near the change point."""
+    motion: Any
+    """DrivenMotion of N rows."""
+
+
+def with_reactions(packed: Packed, laws: Laws, motion: Any, redundant: int, beside: Sequence[Beside] = ()) -> Any:
     """Return a DrivenMotion with multipliers and wrenches; ``redundant`` rows of joints repeat others."""
+    if not beside:
+        return _with_reactions(packed, laws, motion, redundant)
+    lam, wrench = (np.full((len(motion.q), *part.shape[1:]), np.nan) for part in (motion.lam, motion.wrench))
+    clear = ~np.isin(motion.times, np.concatenate([known.side.rows for known in beside]))
+    apart = {name: part[clear] for name, part in motion._asdict().items() if name != "stride" and len(part)}
+    solved = _with_reactions(packed, laws, motion._replace(**apart), redundant)
+    lam[clear], wrench[clear] = solved.lam, solved.wrench
+    scale = np.ones(lam.shape[1])
+    scale[: packed.system.held] = packed.row_scale
+    for side, factor, nodes in beside:
+        there = _with_reactions(packed, laws, nodes, redundant)
+        rows = np.searchsorted(motion.times, side.rows)
+        lam[rows], wrench[rows] = efforts_beside(side, factor, there.lam, there.wrench, scale, packed.size)
+    return motion._replace(lam=lam, wrench=wrench)
+
+
+def _with_reactions(packed: Packed, laws: Laws, motion: Any, redundant: int) -> Any:
     if len(motion.lam) == len(motion.q):
         return motion
     motion = motion._replace(lam=_multipliers(packed, laws, motion, redundant))
@@ -73,5 +102,5 @@ def residuals(packed: Packed, laws: Laws, motion: Any) -> tuple[float, float, fl
         float(np.abs(phi).max(initial=0.0)),
         float(np.abs(speed).max(initial=0.0)),
         float(np.abs(bend).max(initial=0.0)),
-        float(np.abs(power).max(initial=0.0)),
+        float(np.nan_to_num(np.abs(power)).max(initial=0.0)),
     )

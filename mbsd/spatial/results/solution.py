@@ -12,7 +12,7 @@ sol.energy.kinetic, .potential
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
@@ -30,14 +30,13 @@ from mbsd.spatial.model.body import Marker
 from mbsd.spatial.model.joint import Joint
 from mbsd.spatial.results.forces import ForceView, WrenchView, force_values, force_view, wrench_view
 from mbsd.spatial.results.frames import (
-    BodyMotion,
     body_motion,
     marker_frame,
     moved_frame,
     slides_between,
     turns_between,
 )
-from mbsd.spatial.results.reactions import residuals, with_reactions
+from mbsd.spatial.results.reactions import Beside, residuals, with_reactions
 from mbsd.spatial.results.views import FrameView, JointView
 
 if TYPE_CHECKING:
@@ -61,8 +60,10 @@ class Solution(Suggesting):
     mobility: Mobility
     laws: Any = field(repr=False)
     """Laws of drivers and forces, as kernels read them."""
-    starts: Mapping[str, float] = field(repr=False)
-    """Turns (rad) and slides (m) that start_near gave."""
+    starts: Mapping[str, Any] = field(repr=False)
+    """Turns (rad) and slides (m) that start_near gave; of many motions (R,)."""
+    beside: Sequence[Beside] = field(default=(), repr=False)
+    """Motions beside change points."""
     inserted_steps: int = 0
     """Steps added between outputs to stay on the branch."""
     steps: int = 0
@@ -104,7 +105,7 @@ class Solution(Suggesting):
     @cached_property
     def _whole(self) -> Any:
         """The motion with multipliers and wrenches, which are found when they are first asked for."""
-        return with_reactions(self.packed, self.laws, self.motion, self.mobility.redundant_rows)
+        return with_reactions(self.packed, self.laws, self.motion, self.mobility.redundant_rows, self.beside)
 
     def body(self, name: str) -> FrameView:
         """Return the motion of a body's frame."""
@@ -127,7 +128,7 @@ class Solution(Suggesting):
         joints = self.packed.passive_joints
         k = self._index(name, [joint.name for joint in joints], "joint")
         joint, wrench = joints[k], self._whole.wrench[self.wanted, k]
-        i, j = (marker_frame(marker, self._steps_of(marker)) for marker in (joint.i, joint.j))
+        i, j = self._frames_of(joint)
         return JointView(
             name=name,
             kind=joint.kind.name,
@@ -135,11 +136,14 @@ class Solution(Suggesting):
             axes=i.rotation[self.wanted],
             force=wrench[:, :3],
             moment=wrench[:, 3:],
-            turns=self._of_outputs(turns_between(i, j, self.motion.times, self._begin(joint)))
-            if joint.kind.turns
-            else None,
+            turns=self._turns(joint, i, j) if joint.kind.turns else None,
             slides=self._of_outputs(slides_between(i, j)) if joint.kind.slides else None,
         )
+
+    def measured(self, joint: Joint, what: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return "turn" (rad) or "slide" (m) of a joint that has it, with its derivatives by time (T,)."""
+        i, j = self._frames_of(joint)
+        return self._turns(joint, i, j) if what == "turn" else self._of_outputs(slides_between(i, j))
 
     def driver(self, name: str) -> DriverView:
         """Return value, effort and power of a driver."""
@@ -178,7 +182,7 @@ class Solution(Suggesting):
 
     @cached_property
     def period(self) -> float | None:
-        """The time spanned (s) if all poses, velocities and accelerations return to those of the start; else None."""
+        """The time spanned (s) if all returns to the start: poses, velocities, accelerations; else None."""
         first, last = (self.q[k, 3:].reshape(-1, 7).copy() for k in (0, -1))
         last[:, 3:] *= np.where((first[:, 3:] * last[:, 3:]).sum(axis=1, keepdims=True) < 0.0, -1.0, 1.0)
         pairs = ((first, last), (self.v[0], self.v[-1]), (self.a[0], self.a[-1]))
@@ -191,16 +195,23 @@ class Solution(Suggesting):
         steps = self.steps or len(self.motion.times)
         return Stats(*residuals(self.packed, self.laws, self._whole), steps, self.inserted_steps)
 
-    def _begin(self, joint: Joint) -> float:
+    def _begin(self, joint: Joint) -> Any:
         """Return the turn (rad) near which a joint starts, as a driver or start_near has it."""
         for k, driver in enumerate(self.packed.drivers):
             if driver.kind.angular and driver.coupled[0] is joint:
                 return float(self.motion.drives[0, k + 1, 0])
         return self.starts.get(joint.name, 0.0)
 
-    def _steps_of(self, marker: Marker) -> BodyMotion:
-        b = self.packed.body_names.index(marker.body.name)
-        return body_motion(b, self.motion.q, self.motion.v, self.motion.a)
+    def _frames_of(self, joint: Joint) -> list[FrameView]:
+        """Return the motions of a joint's markers at all steps."""
+        out = []
+        for marker in (joint.i, joint.j):
+            b = self.packed.body_names.index(marker.body.name)
+            out.append(marker_frame(marker, body_motion(b, self.motion.q, self.motion.v, self.motion.a)))
+        return out
+
+    def _turns(self, joint: Joint, i: FrameView, j: FrameView) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        return self._of_outputs(turns_between(i, j, self.motion.times, self._begin(joint)))
 
     def _of_outputs(self, parts: tuple[np.ndarray, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         first, second, third = (part[self.wanted] for part in parts)

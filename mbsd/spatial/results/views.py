@@ -43,17 +43,17 @@ class FrameView(Suggesting):
     @property
     def x(self) -> np.ndarray:
         """(T,) m"""
-        return self.place[:, 0]
+        return self.place[..., 0]
 
     @property
     def y(self) -> np.ndarray:
         """(T,) m"""
-        return self.place[:, 1]
+        return self.place[..., 1]
 
     @property
     def z(self) -> np.ndarray:
         """(T,) m"""
-        return self.place[:, 2]
+        return self.place[..., 2]
 
     @property
     def w_body(self) -> np.ndarray:

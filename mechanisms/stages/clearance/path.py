@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -79,7 +80,7 @@ JUMP = 3.0
 """A jump of velocity inside an interval moves the true path by at most this times the cubic's from the quintic."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class BodyPath:
     """One body over time: (n, 3) x, y (mm), theta (rad), their rates and accelerations (per s)."""
 
@@ -122,7 +123,7 @@ class BodyPath:
     def turning(self) -> tuple[np.ndarray, np.ndarray]:
         """Bounds (m,) of the angular velocity (rad/s) and acceleration (rad/s^2) in each interval."""
         angle = self.control[:, :, 2:]
-        return _largest(angle, self.width, 1), _largest(angle, self.width, 2)
+        return largest(angle, self.width, 1), largest(angle, self.width, 2)
 
     def interval(self, time: np.ndarray) -> np.ndarray:
         """Return (m,) the interval in which each time lies; of two that meet there, the later."""
@@ -154,8 +155,12 @@ class BodyPath:
         off = np.stack(
             [self.control[:, 2] - (x0 + 6 * c1 + 3 * c2) / 10, self.control[:, 3] - (3 * c1 + 6 * c2 + x1) / 10]
         )
-        largest = JUMP * DIFFERENCE * np.stack([np.hypot(*np.moveaxis(off[:, :, :2], -1, 0)), np.abs(off[:, :, 2])])
-        return largest[0].max(axis=0), largest[1].max(axis=0)
+        places, turns = self._sizes(off)
+        return JUMP * DIFFERENCE * places.max(axis=0), JUMP * DIFFERENCE * turns.max(axis=0)
+
+    def _sizes(self, change: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return how far (mm) and by which angle (rad) changes (..., columns) of the pose move a body."""
+        return np.hypot(change[..., 0], change[..., 1]), np.abs(change[..., 2])
 
     def interpolation_error(self, reach: float) -> np.ndarray:
         """Return (m,) the same for a point ``reach`` mm from the origin (mm)."""
@@ -200,10 +205,10 @@ class RelativePath:
         away = float(np.hypot(*centre))
         gap = mover.control - still.control
         h = mover.width
-        turn = (_largest(gap[:, :, 2:], h, 1), _largest(gap[:, :, 2:], h, 2))
+        turn = (largest(gap[:, :, 2:], h, 1), largest(gap[:, :, 2:], h, 2))
         own, frame = mover.turning, still.turning
-        speed = _largest(gap[:, :, :2], h, 1) + own[0] * away
-        acceleration = _largest(gap[:, :, :2], h, 2) + (own[1] + own[0] ** 2) * away
+        speed = largest(gap[:, :, :2], h, 1) + own[0] * away
+        acceleration = largest(gap[:, :, :2], h, 2) + (own[1] + own[0] ** 2) * away
         ends = [np.hypot(*points(m.pose[m.first + k], centre).T - s.pose[s.first + k, :2].T) for k in (0, 1)
                 for m, s in ((mover, still),)]  # fmt: skip
         distance = np.maximum(*ends) + speed * h / 2
@@ -226,9 +231,9 @@ class RelativePath:
         return float((self.mover.width**2 / 8 * (self.push + radius * self.spin)).sum())
 
 
-def _largest(control: np.ndarray, width: np.ndarray, order: int) -> np.ndarray:
-    """Return (m,) a bound of a derivative's norm in each interval, from control points (m, 6, d)."""
-    factor = {1: 5.0, 2: 20.0}[order] / width**order
+def largest(control: np.ndarray, width: np.ndarray, order: int) -> np.ndarray:
+    """Return (m,) a bound of a derivative's norm in each interval, from control points (m, degree + 1, d)."""
+    factor = math.perm(control.shape[1] - 1, order) / width**order
     return factor * np.linalg.norm(np.diff(control, n=order, axis=1), axis=2).max(axis=1)
 
 
@@ -279,11 +284,15 @@ def _with_common_pins(axes: Axes) -> Axes:
 
 
 def far_bodies(pieces: Sequence[MeshPiece], where: Mapping[str, BodyPath], reach: float) -> set[frozenset[str]]:
-    """Return pairs of bodies whose pieces are ``reach`` (mm) apart or more as long as there are both."""
+    """Return pairs of bodies whose pieces are ``reach`` (mm) apart or more as long as there are both.
+
+    Pieces and paths are those in the plane, or those in space.
+    """
     radius: dict[str, float] = {}
     for piece in pieces:
         radius[piece.body] = max(radius.get(piece.body, 0.0), piece.reach)
-    places = {body: where[body].control[:, :, :2] for body in radius}
+    axes = max((len(piece.centre) for piece in pieces), default=2)
+    places = {body: where[body].control[:, :, :axes] for body in radius}
     boxes = {body: (place.min(axis=1), place.max(axis=1)) for body, place in places.items()}
     room = {body: r + where[body].interpolation_error(r) for body, r in radius.items()}
     pairs = set()
@@ -291,7 +300,7 @@ def far_bodies(pieces: Sequence[MeshPiece], where: Mapping[str, BodyPath], reach
         both = slice(min(len(room[a]), len(room[b])))
         (low_a, high_a), (low_b, high_b) = ([side[both] for side in boxes[body]] for body in (a, b))
         gap = np.maximum(np.maximum(low_b - high_a, low_a - high_b), 0.0)
-        if (np.hypot(gap[:, 0], gap[:, 1]) - room[a][both] - room[b][both] >= reach).all():
+        if (np.linalg.norm(gap, axis=1) - room[a][both] - room[b][both] >= reach).all():
             pairs.add(frozenset((a, b)))
     return pairs
 

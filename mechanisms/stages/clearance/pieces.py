@@ -64,7 +64,7 @@ class Tree:
         """Number of leaves; the first of them is the node of this number."""
         padded = np.full((self.leaves, *facets.shape[1:]), np.nan)
         padded[: len(facets)] = facets
-        self.facets = padded[_order(padded.mean(axis=1))]
+        self.facets = padded[leaf_order(padded.mean(axis=1))]
         """(leaves, corners, 3): by leaf; those beyond the last are not a number, and so near to nothing."""
         self.centre = np.full((2 * self.leaves, 2), np.nan)
         self.radius = np.full(2 * self.leaves, np.nan)
@@ -98,7 +98,7 @@ class FacetTree(Tree):
 
     def __init__(self, triangles: np.ndarray, centre: np.ndarray, radius: float) -> None:
         """``triangles`` (n, 3, 3); ``centre`` (2,) and ``radius``: the circle that holds them in the plane."""
-        facets = _halved(triangles - np.append(centre, 0.0), longest_in(radius))
+        facets = halved(triangles - np.append(centre, 0.0), longest_in(radius))
         walls = np.cross(facets[:, 1] - facets[:, 0], facets[:, 2] - facets[:, 0])[:, :2] @ np.array([1.0, 1j])
         super().__init__(facets, walls)
 
@@ -114,7 +114,7 @@ def _axis_of_walls(walls: np.ndarray) -> complex:
     return complex(np.exp(1j * float(np.angle(turned)) / 4))
 
 
-def _order(centres: np.ndarray) -> np.ndarray:
+def leaf_order(centres: np.ndarray) -> np.ndarray:
     """Leaves halved at the middle of each group's longest side, level by level.
 
     What is not a number comes last.
@@ -130,14 +130,14 @@ def _order(centres: np.ndarray) -> np.ndarray:
     return order[:, 0]
 
 
-def _halved(t: np.ndarray, longest: float) -> np.ndarray:
+def halved(t: np.ndarray, longest: float, axes: int = 2) -> np.ndarray:
     """Return triangles halved across their longest edge until none is longer than ``longest``.
 
-    Lengths are those in the plane.
+    Lengths are those along so many axes: in the plane, or in space.
     """
     done = []
     while len(t):
-        length = np.hypot(*np.moveaxis((np.roll(t, -1, axis=1) - t)[:, :, :2], -1, 0))
+        length = np.linalg.norm((np.roll(t, -1, axis=1) - t)[:, :, :axes], axis=2)
         long = length.max(axis=1) > longest
         done.append(t[~long])
         t, length = t[long], length[long]

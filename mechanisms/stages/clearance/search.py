@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,9 +13,6 @@ from mechanisms.stages.clearance.path import BodyPath, RelativePath, relative
 from mechanisms.stages.clearance.pieces import MeshPiece, Tree
 
 # Spans of time: intervals of data.json, neighbours together where there are many, halved where a search needs it.
-
-MOST_SPANS = 400
-"""Spans to begin with; of more intervals, neighbours are taken together."""
 
 
 class Spans:
@@ -28,25 +27,36 @@ class Spans:
     ``turn`` (rad) are how far centre and angle are from the middle's at most.
     """
 
-    def __init__(self, path: RelativePath) -> None:
+    begin = 400
+    """Spans to begin with; of more intervals, neighbours are taken together."""
+    first: np.ndarray
+    last: np.ndarray
+    start: np.ndarray
+    end: np.ndarray
+    ends: np.ndarray
+    place: np.ndarray
+    turned: np.ndarray
+    push: np.ndarray
+    spin: np.ndarray
+    travel: np.ndarray
+    turn: np.ndarray
+    off: np.ndarray
+    _half: np.ndarray
+
+    def __init__(self, path: Any) -> None:
+        """``path``: a :class:`RelativePath`, or its like in space."""
         self.path = path
         start, width = path.mover.start, path.mover.width
         self.error = path.error
-        self._most = 1 + (len(start) - 1) // MOST_SPANS
+        self._most = 1 + (len(start) - 1) // self.begin
         """Intervals in a span."""
         jumps = np.flatnonzero(np.diff(path.mover.first) != 1) + 1  # two samples at one time: velocities may differ
         firsts = np.unique(np.concatenate([np.arange(0, len(start), self._most), jumps]))
         lasts = np.append(firsts[1:], len(start)) - 1
-        self.first, self.last = np.empty(0, int), np.empty(0, int)
-        self.start, self.end = np.empty(0), np.empty(0)
-        self.ends = np.empty((0, 3, 3))
-        self.place, self.turned = np.empty((0, 3), complex), np.empty((0, 3), complex)
-        self.push, self.spin, self.travel, self.turn, self.off = (np.empty(0) for _ in range(5))
-        self._half = np.empty(0, int)
         self._add(firsts, lasts, start[firsts], start[lasts] + width[lasts])
 
     def __len__(self) -> int:
-        return len(self.start)
+        return len(getattr(self, "start", ()))
 
     def middle(self, spans: np.ndarray) -> np.ndarray:
         """Return (n,) the time (s) in the middle of each span."""
@@ -73,8 +83,6 @@ class Spans:
         middle = (start + end) / 2
         inner = np.clip(self.path.mover.interval(middle), first, last)
         places = ((first, start), (inner, middle), (last, end))
-        ends = np.stack([self.path.place(k, t) for k, t in places], axis=1)
-        off = np.abs(ends[:, (0, 2)] - ends[:, 1:2])
         bend = (end - start) ** 2 / 8
         within = np.minimum(first[:, None] + np.arange(self._most), last[:, None])
         push, spin = bend * self.path.push[within].max(axis=1), bend * self.path.spin[within].max(axis=1)
@@ -84,17 +92,30 @@ class Spans:
             "off": self.error[within].max(axis=1),
             "start": start,
             "end": end,
+            "push": push,
+            "spin": spin,
+            "_half": np.full(len(start), -1),
+        }
+        columns |= self._poses(places, push, spin)
+        for name, column in columns.items():
+            setattr(self, name, np.concatenate([getattr(self, name, column[:0]), column]))
+
+    def _poses(
+        self, places: Sequence[tuple[np.ndarray, np.ndarray]], push: np.ndarray, spin: np.ndarray
+    ) -> dict[str, np.ndarray]:
+        """Return ends, place, turned, travel and turn of new spans.
+
+        ``places``: interval and time of the start, middle and end of each.
+        """
+        ends = np.stack([self.path.place(k, t) for k, t in places], axis=1)
+        off = np.abs(ends[:, (0, 2)] - ends[:, 1:2])
+        return {
             "ends": ends,
             "place": ends[:, :, 0] + 1j * ends[:, :, 1],
             "turned": np.exp(1j * ends[:, :, 2]),
-            "push": push,
-            "spin": spin,
             "travel": np.hypot(off[:, :, 0], off[:, :, 1]).max(axis=1) + push,
             "turn": off[:, :, 2].max(axis=1) + spin,
-            "_half": np.full(len(start), -1),
         }
-        for name, column in columns.items():
-            setattr(self, name, np.concatenate([getattr(self, name), column]))
 
 
 # Pairs of triangles in space, many at once: their distance, and how far a direction separates them.
@@ -185,6 +206,9 @@ def _dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 # Two pieces over a motion: their gap at a time, whether they stay far apart, and where they overlap.
 
+IN_PLANE = np.radians(np.arange(0, 180, 5))
+"""Angles of the directions in which the depth of an overlap is measured."""
+
 
 @dataclass(frozen=True)
 class Overlap:
@@ -202,6 +226,12 @@ class Sweep:
     One stands still, the other moves relative to it, whichever bends its paths less.
     """
 
+    relative: Any = RelativePath
+    """Class of the path of one body seen from another."""
+    spans: Any = Spans
+    directions = np.column_stack([(0.0, 0.0, 1.0), *((math.cos(a), math.sin(a), 0.0) for a in IN_PLANE)])
+    """(3, n): directions in which the depth of an overlap is measured, those of height and in the plane."""
+
     def __init__(self, first: MeshPiece, second: MeshPiece, path_first: BodyPath, path_second: BodyPath) -> None:
         ends = [path_first.interpolation_error(first.reach), path_second.interpolation_error(second.reach)]
         self.error = ends[0] + ends[1]
@@ -211,7 +241,7 @@ class Sweep:
             (first, second, path_first, path_second),
             (second, first, path_second, path_first),
         ):
-            path = RelativePath(moved, seen, mover.centre, self.error)
+            path = self.relative(moved, seen, mover.centre, self.error)
             options.append((path.bend(mover.radius), path, mover, still))
         _, self.path, self.mover, self.still = min(options, key=lambda option: option[0])
         self.times = self.path.mover.time
@@ -221,9 +251,10 @@ class Sweep:
         return self.still.manifold.min_gap(self._moved(time), reach)
 
     def is_apart(self, reach: float) -> bool:
-        """Return True if the circles round the two pieces stay ``reach`` (mm) apart over the whole motion."""
-        spans = Spans(self.path)
-        away = np.hypot(*(spans.ends[:, 1, :2] - self.still.centre).T) - spans.travel
+        """Return True if the circles, or spheres, round the two pieces stay ``reach`` (mm) apart all the time."""
+        spans = self.spans(self.path)
+        centre = self.still.centre
+        away = np.linalg.norm(spans.ends[:, 1, : len(centre)] - centre, axis=1) - spans.travel
         return bool((away - spans.off - self.mover.radius - self.still.radius >= reach).all())
 
     def overlap(self, around: float, count: int = 120) -> Overlap:
@@ -235,17 +266,12 @@ class Sweep:
         return Overlap(float(times[deepest]), float(depth[deepest]), float(touching[0]), float(touching[-1]))
 
     def depth_at(self, time: float) -> float:
-        """Return how deep (mm) the pieces overlap: the least width of what they share, in any direction.
-
-        Directions are those of height and in the plane.
-        """
+        """Return how deep (mm) the pieces overlap: the least width of what they share, in any of the directions."""
         common = self.still.manifold ^ self._moved(time)
         if common.is_empty():
             return 0.0
         corners = common.to_mesh().vert_properties[:, :3]
-        angles = np.radians(np.arange(0, 180, 5))
-        across = corners[:, :2] @ np.stack([np.cos(angles), np.sin(angles)])
-        return float(min(np.ptp(corners[:, 2]), np.ptp(across, axis=0).min()))
+        return float(np.ptp(corners @ self.directions, axis=0).min())
 
     def _moved(self, time: float) -> Any:
         moment = np.array([time])
@@ -303,6 +329,9 @@ class Search:
     resolution = RESOLUTION
     most = MOST
 
+    a: Any
+    b: Any
+
     def __init__(self, still: Tree, mover: Tree, path: RelativePath, offset: np.ndarray) -> None:
         """``offset`` (2,): the origin of ``still`` in its body's frame (mm).
 
@@ -313,7 +342,10 @@ class Search:
         to_plane = np.array([1.0, 1j])
         self._centre_a, self._centre_b = (still.centre + offset) @ to_plane, mover.centre @ to_plane
         self._box_a, self._box_b = (still.box_centre + offset) @ to_plane, mover.box_centre @ to_plane
-        self.spans = Spans(path)
+        self._begin(Spans(path))
+
+    def _begin(self, spans: Any) -> None:
+        self.spans = spans
         self.best = self.time = self.proven = self.off = 0.0
         self.looked = 0
         """Candidates looked at."""
@@ -466,7 +498,7 @@ class Search:
         The gap (mm) at the middle of the span, and what the best direction separates them by at both its ends.
         """
         p, q = self.a.facets[a] + self.offset, self.b.facets[b]
-        first, middle, last = (_placed(q, self.spans.ends[span, k]) for k in range(3))
+        first, middle, last = (self._facets(q, span, k) for k in range(3))
         gap, way = nearest(p, middle)
         straight = way / np.maximum(gap, 1e-12)[:, None]
         gap = np.where(separation(straight, p, middle) > 0.0, gap, 0.0)  # else they pierce each other
@@ -475,6 +507,10 @@ class Search:
             ends = np.minimum(separation(direction, p, first), separation(direction, p, last))
             low = np.maximum(low, np.where((direction != 0).any(axis=1), ends, -np.inf))
         return gap, low
+
+    def _facets(self, q: np.ndarray, span: np.ndarray, k: int) -> np.ndarray:
+        """Return facets (n, 3, 3) of the mover at start, middle or end (``k`` 0, 1, 2) of each span."""
+        return _placed(q, self.spans.ends[span, k])
 
     def _halved_spans(self, rows: np.ndarray, low: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         if not len(rows):

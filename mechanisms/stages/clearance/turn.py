@@ -40,13 +40,13 @@ def turn_gap(first: np.ndarray, second: np.ndarray, reach: float, limit: float =
     for _ in range(ROUNDS):
         if best < limit:
             return best, 0.0
-        box_a, box_b = _boxes(a), _boxes(b)
+        box_a, box_b = ring_boxes(a), ring_boxes(b)
         a, box_a = _near(a, box_a, _hull(box_b), best)
         b, box_b = _near(b, box_b, _hull(box_a), best)
         if not len(a) or not len(b):
             break
         enough = best - RESOLUTION if best < reach else reach
-        low_a, low_b = _bounds(box_a, box_b, enough)
+        low_a, low_b = nearest_boxes(box_a, box_b, enough)
         proven = float(low_a.min())
         if proven >= enough:
             break
@@ -57,7 +57,7 @@ def turn_gap(first: np.ndarray, second: np.ndarray, reach: float, limit: float =
     return (best, max(best - RESOLUTION, 0.0)) if best < reach else (reach, reach)
 
 
-def _boxes(t: np.ndarray) -> np.ndarray:
+def ring_boxes(t: np.ndarray) -> np.ndarray:
     """Return (n, 4): least r, largest r, least z, largest z of each triangle, rounded outwards."""
     r = np.hypot(t[:, :, 0], t[:, :, 1])
     z = t[:, :, 2]
@@ -117,7 +117,7 @@ def _box_gap(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return _pair_gap(a[:, None], b[None])
 
 
-def _bounds(a: np.ndarray, b: np.ndarray, enough: float) -> tuple[np.ndarray, np.ndarray]:
+def nearest_boxes(a: np.ndarray, b: np.ndarray, enough: float) -> tuple[np.ndarray, np.ndarray]:
     """Return each box's distance to the nearest box of the other set, ``enough`` at most."""
     (first_a, which_a), (first_b, which_b) = distinct(a), distinct(b)
     (a, place_a, hull_a), (b, place_b, hull_b) = _grouped(a[first_a]), _grouped(b[first_b])

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, cast
 
+import msgspec
+
 from mechanisms.stages.solve.space.running import is_in_space
 from shared.contract import BodyParts, Parts, Provenance
 from shared.contract.materials import MATERIALS
@@ -50,11 +52,11 @@ def skeleton_of(solution: Solution, provenance: Provenance) -> Skeleton:
 
     from mbsd.drawing.strokes import moved, strokes_of
 
-    in_space = is_in_space(solution)
-    if in_space:
+    shown = None
+    if is_in_space(solution):
         from mbsd.spatial import drawing
 
-        strokes_of = cast(Any, drawing.strokes_of)
+        strokes_of, shown = cast(Any, drawing.strokes_of), drawing.moving(cast(Any, solution))
     times = np.linspace(solution.t[0], solution.t[-1], POSES + 1)[:-1]
     steps = np.unique(np.abs(solution.t[:, None] - times).argmin(axis=0))
     drawn = strokes_of(solution, [int(step) for step in steps])
@@ -71,7 +73,7 @@ def skeleton_of(solution: Solution, provenance: Provenance) -> Skeleton:
         unit=first.unit,
         names=names,
         poses=poses,
-        moving=None if in_space else moving_of(solution),
+        moving=moving_of(solution, shown),
     )
 
 
@@ -100,7 +102,8 @@ def moving_of(solution: Solution, drawn: Drawn | None = None) -> Moving:
 
 
 def _carrier(carrier: Any) -> Carrier:
-    return Carrier(kind=carrier.kind, ends=[End(body=end.body, x=end.x, y=end.y) for end in carrier.ends])
+    ends = [End(body=e.body, x=e.x, y=e.y, z=msgspec.UNSET if e.z is None else e.z) for e in carrier.ends]
+    return Carrier(kind=carrier.kind, ends=ends)
 
 
 def _name(label: Any, unit: float) -> Name:

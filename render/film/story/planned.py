@@ -22,10 +22,10 @@ from shared.stage.errors import UserError, did_you_mean
 
 BUDGET = 2.2
 """Pictures of a story beside those of the loop film; starting Blender twice takes the rest up to 2.5."""
-SHORTEST = 3.0
+SHORTEST = 3.2
 """Seconds of the shortest loop film that counts for that: a story of fewer pictures would stand still."""
-WAYS = ((True, 1.0), (False, 1.0), (False, 0.75), (False, 0.55), (False, 0.4), (False, 0.25), (False, 0.12))
-"""Turning of the camera while the machine is shown, and the part of the seconds of moves; the first pair that fits."""
+SCALES = (1.0, 0.85, 0.75, 0.65, 0.55, 0.47, 0.4, 0.32, 0.25, 0.18, 0.12)
+"""Parts of the seconds of moves, where the camera does not turn while the machine is shown; the first that fits."""
 ARROWED = 2.6
 """Cost of a picture with arrows, which are rendered apart, in pictures without."""
 TWOS = ("draft", "preview")
@@ -54,11 +54,15 @@ def planned(
     loop_frames = max(min(film.clock.frames, film.clock.moving + 1), SHORTEST * film.shot.fps)
     most = BUDGET * loop_frames * (2 / scenery.step)
     story = _story(scenery)
-    for turning, scale in WAYS[1:]:
-        if _cost(story) <= most:
-            break
-        story = _story(replace(scenery, turning=turning, scale=scale))
-    return story
+    if _cost(story) <= most:
+        return story
+    first, last = 0, len(SCALES) - 1
+    stories: dict[int, Story] = {}
+    while first <= last:  # the cost falls with the scale
+        k = (first + last) // 2
+        stories[k] = _story(replace(scenery, turning=False, scale=SCALES[k]))
+        first, last = (first, k - 1) if _cost(stories[k]) <= most else (k + 1, last)
+    return stories[min(first, len(SCALES) - 1)]
 
 
 def scenery_of(film: Film, forces: Film | None, reasons: Sequence[Insight], preset: Preset) -> Scenery:

@@ -156,6 +156,7 @@ EACH = 0.45
 
 def lifted(lifts: Sequence[Lift], part: float) -> list[float]:
     """Return heights (m) of all pieces over their place, in a machine that is apart by a ``part`` 0 .. 1."""
-    layers = lifts[-1].order or 1
-    delays = [(1 - lift.order / layers) * (1 - EACH) for lift in lifts]
-    return [lift.distance * eased((part - delay) / EACH) for lift, delay in zip(lifts, delays, strict=True)]
+    last, first = lifts[-1].order, min((lift.order for lift in lifts if lift.distance), default=0)
+    layers, each = last - first, EACH if last > first else 1.0
+    delays = [min((last - lift.order) / max(layers, 1), 1.0) * (1 - each) for lift in lifts]
+    return [lift.distance * eased((part - delay) / each) for lift, delay in zip(lifts, delays, strict=True)]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.film.camera import Subject, angles, point
-from render.film.composing import View, held
+from render.film.composing import View, held, near_miss, shown_area
 from render.film.film import Film
 from render.film.framing import REFERENCE_WIDTH, SENSOR, CameraPose, axes, depth_of_field, in_studio, in_world
 from render.film.pieces import Lift, exploded
@@ -215,10 +215,11 @@ class Scenery:
         finds its pictures made.
         """
         clock = self.film.clock
-        frame = round((time - clock.start) / (clock.end - clock.start) * clock.moving, 6)
+        frame = (time - clock.start) / (clock.end - clock.start) * clock.moving
         if clock.repeats:
-            return frame % clock.frames
-        return min(max(frame, 0.0), float(clock.moving))
+            frame = round(frame % clock.frames, 6)
+            return 0.0 if frame == clock.frames else frame
+        return round(min(max(frame, 0.0), float(clock.moving)), 6)
 
     @cached_property
     def top(self) -> float:
@@ -261,6 +262,18 @@ class Scenery:
         margin = min(camera.margin, MARGIN)
         view = View(float(turned[0]), float(turned[1]), camera.lens, margin, empty, film.aspect, aside)
         return raised(stand(film.subject, self.up, view), self.up, self.top)
+
+    def share(self, stand: Stand) -> float:
+        """Return the part of the picture's area that the room of what moves takes from a stand."""
+        return shown_area(self._view(stand), stand.position, in_studio(self.film.subject.few, self.up))
+
+    def misses(self, stand: Stand) -> bool:
+        """Return True if the plate or the stand is cut by a sliver from there."""
+        things = [in_studio(thing, self.up) for thing in self.film.subject.things]
+        return any(near_miss(self._view(stand), stand.position, thing) > 0.0 for thing in things)
+
+    def _view(self, stand: Stand) -> View:
+        return View(stand.azimuth, stand.elevation, stand.lens, 0.0, aspect=self.film.aspect)
 
     def camera(self, stand: Stand, at: float) -> CameraPose:
         """Return a camera at a stand, which goes along with what is followed."""

@@ -70,10 +70,10 @@ def _silent_film(out: Out, preset: Preset, show: str, loop: float, telling: Tell
 
 
 def _sound(telling: Telling) -> bytes:
-    from render.sound.sound import sound_of, wav
+    from render.sound.sound import sound_of_story, wav
 
     clock = telling.film.clock
-    return wav(sound_of(telling.film, telling.story.time_map(clock.start, clock.end, clock.repeats)))
+    return wav(sound_of_story(telling.film, telling.story.time_map(clock.start, clock.end, clock.repeats)))
 
 
 def film_of(out: Out, preset: str, show: str = "", loop: float = 0.0) -> Path:

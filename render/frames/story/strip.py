@@ -208,7 +208,7 @@ class Strip:
         return self.panels[k][1] - 1.3 * frame.SMALL * self.unit
 
     def _words(self, k: int, value: float, bare: bool) -> str:
-        words = self._writers[k](value).replace("N m", "N·m")
+        words = self._writers[k](value)
         return words.partition(" ")[0] if bare else words
 
     def _room(self, k: int, bare: bool = False) -> float:

@@ -108,8 +108,6 @@ SHOWN = {"effort_peak": "forces", "speed": "velocities", "speed_peak": "velociti
 """Quantities of arrows by the kind of reason; reactions else."""
 FACTS = 4
 """Facts at the end, at most."""
-WALK = 5.0
-"""km/h"""
 MARKS = 8
 """Events in the strip, at most: more are a pattern of their own."""
 
@@ -249,16 +247,11 @@ def _drawing(out: Out, preset: Preset, film: Film, story: Story, known: list[str
     words = out.name.replace("_", " ").replace("-", ": ")
     said = tuple(re.split(r"(?<=[.!?])\s+(?=[A-Z0-9])", " ".join(description(out.name).split("\n\n")[0].split())))
     said = tuple(sentence for sentence in said if sentence != "SI units.")
-    line = plain(BETWEEN.join(without_slow(fact) for fact in known[1 : 1 + FACTS])).replace("N m", "N·m")
+    line = plain(BETWEEN.join(known[1 : 1 + FACTS]))
     return Drawing(
         wide=preset.width, high=preset.height, name=words[:1].upper() + words[1:], said=said,
         facts=line[:1].upper() + line[1:], strip=strip_of(film, story, preset),
     )  # fmt: skip
-
-
-def without_slow(fact: str) -> str:
-    """Return a fact without the km/h of what is slower than a walk."""
-    return re.sub(r" \(([\d.]+) km/h\)", lambda match: match[0] if float(match[1]) >= WALK else "", fact)
 
 
 def strip_of(film: Film, story: Story, preset: Preset) -> Strip | None:

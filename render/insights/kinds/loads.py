@@ -21,6 +21,8 @@ CLOSES = 0.02
 """Part by which the work of a driver and what comes back may differ, of which nothing is left."""
 ALL = 0.99
 """Part of the time from which on something is called all the time."""
+FINE = 20_001
+"""Steps of a motion in which the sign of a power is looked at."""
 GIVEN_BACK = 0.02
 """Part of a driver's work that has to come back before it is said to brake."""
 MAIN, ALONE = 0.7, 0.97
@@ -102,7 +104,7 @@ def _braking(seen: Seen, name: str, each: DriverMotion | ForceMotion, effort: Ar
         return
     start, end = next(seen.stretches(brakes))
     most = float(np.abs(effort[brakes]).max())
-    share = seen.share(brakes)
+    share = float(np.mean(np.interp(np.linspace(seen.time[0], seen.time[-1], FINE), seen.time, power) < -floor))
     is_closed = abs(given - back) < CLOSES * given and seen.repeats
     template = "all_back" if is_closed else "is_driven" if back > given else "brakes"
     template = "is_driven_always" if template == "is_driven" and share > ALL else template

@@ -25,6 +25,7 @@ NEAR = 0.02
 def passing(seen: Seen) -> Iterator[Insight]:
     """Yield all insights of this chapter."""
     all_loops = loops(seen.motion)
+    yield from crank_limit(seen, all_loops)
     sliding = [loop for loop in all_loops if loop.slides]
     for loop in all_loops:
         yield from transmission(seen, loop)
@@ -119,6 +120,22 @@ def change_point(seen: Seen, loop: Loop) -> Iterator[Insight]:
         "change_point", short + long, "m", seen.moment_of(k), 0.7,
         "parallelogram" if parallel else "change_point", bodies=(loop.crank, loop.coupler, loop.follower),
         crank=body(loop.crank), coupler=body(loop.coupler), follower=body(loop.follower),
+    )  # fmt: skip
+
+
+def crank_limit(seen: Seen, all_loops: list[Loop]) -> Iterator[Insight]:
+    """Yield the length up to which a crank can turn round: the least of its loops."""
+    turning = [loop for loop in all_loops if float(np.ptp(loop.angle)) > 1.9 * math.pi]
+    if not turning or len({loop.crank for loop in turning}) > 1:
+        return
+    loop = min(turning, key=lambda each: each.longest_crank[0])
+    (most, end), length = loop.longest_crank, loop.lengths[0]
+    if not length * (1 + CHANGES) < most < math.inf:
+        return  # it drags the follower round, or passes a change point
+    yield insight(
+        "limit", most, "m", (float(seen.time[0]), float(seen.time[-1])), 0.4 + 0.5 * length / most,
+        f"limit_crank{end}", bodies=(loop.crank, loop.coupler, loop.follower), crank=body(loop.crank),
+        length=amount(length, "m"), most=amount(most, "m"), coupler=body(loop.coupler), follower=body(loop.follower),
     )  # fmt: skip
 
 

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from render.magnitudes import NOISE, Crank, crank_of, force_scale, speed_scale, without_noise
 from render.plots.measures import Horizon, cut, dress_axis, dress_plane, horizon, mark, turned
 from render.plots.style import FAINT, INK, LABELLED, PARTS, QUIET, Labels, ink_of, insight_under, label_ends, page, rows
-from render.report.written import first_peak, speed
+from render.report.written import first_peak
 from shared.contract import AnyMotion, BodyMotion, Motion, PointMotion
 from shared.contract.quantity import figures, written
 from shared.contract.skeleton import Skeleton, Stroke
@@ -108,7 +108,7 @@ def _largest(axes: Axes, over: Horizon, unit: str, values: np.ndarray, floor: fl
         return
     axes.plot(over.values[k], values[k], "o", color=INK, markersize=4.5, zorder=5, label="largest")
     size, at = abs(float(values[k])), float(over.values[k])
-    text = speed(size) if unit == "m/s" else f"{written(size, unit)} ({figures(size / G, 3)} g)"
+    text = written(size, unit) if unit == "m/s" else f"{written(size, unit)} ({figures(size / G, 3)} g)"
     where = written(at, over.unit, 4) if over.degrees else f"{figures(at)} s"
     axes.text(
         1.0, 1.02, f"largest {text} at {where}", transform=axes.transAxes, ha="right", va="bottom", color=QUIET,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -14,11 +13,9 @@ from render.plots.pages.motion import Line, draw, draw_names, draw_stroke, faint
 from render.plots.style import INK, PALETTE, PARTS, Labels, colour, page, rows
 from shared.contract import Motion3
 from shared.contract.quantity import written
-from shared.contract.skeleton import Skeleton
+from shared.contract.skeleton import VIEW, Skeleton
 from shared.contract.space import columns
 
-AZIMUTH, ELEVATION = math.radians(-20.705), math.radians(19.471)
-"""The view of skeleton.json (mbsd/spatial/drawing.py)."""
 NOISE = 1e-9
 """Part of the largest value that is rounding."""
 Panel = tuple[str, str, list[Line]]
@@ -47,8 +44,7 @@ def figure_in_space(plot: str, motion: Motion3, skeleton: Skeleton) -> Figure:
 
 def flat(places: np.ndarray) -> np.ndarray:
     """Return places (n, 3) in the picture (n, 2)."""
-    c, s, ce, se = math.cos(AZIMUTH), math.sin(AZIMUTH), math.cos(ELEVATION), math.sin(ELEVATION)
-    return places @ np.array([[c, s, 0.0], [-s * se, c * se, ce]]).T
+    return places @ np.array(VIEW).T
 
 
 def path(motion: Motion3, skeleton: Skeleton) -> Figure:

@@ -33,10 +33,6 @@ from studio.live.numbers import changed
 # Solutions as the page shows them: the bytes of its payload.
 
 
-OF_PARTS = ("bodies", "arrows", "arcs", "trails", "clearance", "solid")
-"""Entries of the payload that change once there are parts."""
-
-
 class Shown:
     """Payloads of one mechanism; ``quick`` ones keep symbol size and extent of the last whole one."""
 
@@ -67,15 +63,15 @@ class Shown:
         return payload(motion, skeleton_data, shot, arrows or not quick)
 
     def solid(self, parts: Parts, shot: Shot | None, folder: Path) -> bytes:
-        """Return the bytes of the last motion's payload that show its parts. Raises UserError."""
+        """Return the bytes of the last motion's payload with its parts. Raises UserError."""
         from render.film.film import Film
         from render.view.solid import with_parts
 
         assert self._motion is not None
         motion, skeleton_data = self._motion
         motion = with_rods(motion, parts)
-        whole = with_parts(payload(motion, skeleton_data, shot), Film(motion, parts, shot or Shot(), folder))
-        return encode({key: whole[key] for key in OF_PARTS}, compress=False)
+        film = Film(motion, parts, shot or Shot(), folder)
+        return encode(with_parts(payload(motion, skeleton_data, shot), film), compress=False)
 
 
 # The stop of a driven motion: the last moment at which the links close, with the motion up to there.

@@ -10,6 +10,7 @@ import argparse
 from shared.stage.console import run_cli, say
 from shared.stage.files import write_bytes
 from shared.stage.paths import Out, known_name
+from studio.site.designs.stage import stage_of
 
 
 def main() -> int:
@@ -17,11 +18,16 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m studio.site.designs", description=__doc__)
     parser.add_argument("name")
     name = known_name(parser.parse_args().name)
+    stage = stage_of(Out(name))
+    if stage.is_fresh():
+        say("designs", f"{name}: nothing to do")
+        return 0
     from studio.live.child.author import Author
     from studio.site.designs.table import table_of
 
     table = table_of(Author(name, lambda files: None))
-    write_bytes(Out(name).folder / "designs.bin", table.content if table else b"")
+    write_bytes(Out(name).designs, table.content if table else b"")
+    stage.record()
     if table is None:
         say("designs", f"{name}: none of its numbers can be moved smoothly")
     else:

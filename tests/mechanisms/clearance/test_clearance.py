@@ -19,7 +19,7 @@ from mechanisms.stages.clearance.path import BodyPath, paths, points, relative
 from mechanisms.stages.clearance.pieces import MeshPiece, distinct
 from mechanisms.stages.clearance.search import RESOLUTION as SHARP
 from mechanisms.stages.clearance.search import Sweep
-from mechanisms.stages.clearance.turn import RESOLUTION, _bounds, _box_gap, turn_gap
+from mechanisms.stages.clearance.turn import RESOLUTION, _box_gap, nearest_boxes, turn_gap
 from mechanisms.stages.parts_files import TOLERANCE, read_triangles, stl_bytes
 from shared.contract import Motion
 from shared.shapes.pin import pin
@@ -322,7 +322,7 @@ def test_bounds_of_boxes_in_groups_are_those_of_all_pairs(seed: int, n: int, m: 
     low = [rng.uniform(0, 10, (count, 2)).round(1) for count in (n, m)]
     a, b = (np.stack([corner, corner + rng.exponential(0.3, corner.shape)], axis=2).reshape(-1, 4) for corner in low)
     gaps = _box_gap(a, b)
-    found_a, found_b = _bounds(a, b, enough)
+    found_a, found_b = nearest_boxes(a, b, enough)
     assert np.array_equal(found_a, np.minimum(gaps.min(axis=1), enough))
     assert np.array_equal(found_b, np.minimum(gaps.min(axis=0), enough))
 

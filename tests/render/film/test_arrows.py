@@ -299,7 +299,7 @@ def test_the_largest_has_the_full_sweep_tiny_ones_and_rounding_are_left_out():
     made = Arcs(TIME, [steady_torque(-50.0), steady_torque(5.0, at=(1, 0)), steady_torque(0.4 * TINY * 50.0)], size=0.4)
     assert [torque.value[0] for torque in made.torques] == [-50.0, 5.0]
     assert [sweep for _, sweep, _ in made.sweeps_at(0.5, [0.01, 0.02])] == pytest.approx([-FULL_TURN, FULL_TURN / 10])
-    assert [row.number for row in made.legend()] == ["20 N m"]
+    assert [row.number for row in made.legend()] == ["20 N·m"]
     assert made.legend()[0].sweep == pytest.approx(FULL_TURN * 20 / 50)
     forces = vectors(four_bar_motion(), ("forces", "reactions"))
     least = rounding(forces, 0.3)
@@ -353,7 +353,7 @@ def test_the_legend_shows_how_far_an_arc_reaches(tmp_path: Path):
     seen = []
     for sweep in (0.5 * np.pi, np.pi):
         Image.new("RGB", (640, 360), (40, 40, 40)).save(path)
-        row = LegendRow(number="5 N m", words="torques", colour=TORQUE, sweep=sweep)
+        row = LegendRow(number="5 N·m", words="torques", colour=TORQUE, sweep=sweep)
         card = composing.cards([row], composing.box_of([]), ASPECT)["lower right"]
         words.lay(path, None, Writing(legend=[row], card=card), "")
         orange = np.abs(np.asarray(Image.open(path)) - 255 * np.array(TORQUE)).sum(axis=2) < 40
@@ -366,7 +366,7 @@ def test_the_number_beside_the_title_is_of_what_acts_where_the_drivers_give_noth
     idle = with_driver(four_bar_motion(), kind="any", effort=[0.0] * 361)
     assert arrows.number(idle, shot)(0.0).startswith("lift")
     acting = with_force(idle, 0.3, ("rocker",), True)
-    assert arrows.number(acting, shot)(0.0) == "spring  300 mN m"
+    assert arrows.number(acting, shot)(0.0) == "spring  300 mN·m"
     assert arrows.number(with_force(four_bar_motion(), 0.3, ("rocker",), True), shot)(0.0).startswith("motor")
 
 

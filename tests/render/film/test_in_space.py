@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import math
+import os
+import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -18,19 +21,24 @@ from mechanisms.stages.clearance import stage as clearance_stage
 from mechanisms.stages.parts import stage as parts_stage
 from mechanisms.stages.solve import stage as solve_stage
 from mechanisms.stages.solve.space.motion_file import to_motion3
-from render import glb, plots, report
+from render import glb, plots, report, view
 from render.blender.scene.arrows import going_on, turns_from_x
 from render.film.film import Film
 from render.film.framing import project
 from render.film.inputs import read_film
+from render.film.poses import Moment
 from render.film.scene import across_axes
-from render.film.space import SpacePoses, matrices, quaternion_of, torques_in_space, vectors_in_space
+from render.film.space import SpacePoses, torques_in_space, vectors_in_space
 from render.plots.pages import space as pages
+from render.view.bundle import PAGE, node, node_modules
 from shared.contract import is_in_space, read_motion, read_parts
+from shared.contract.quaternions import matrices, quaternion_of
 from shared.contract.shot import Shot
+from shared.contract.skeleton import VIEW, read_skeleton
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
 from tests.render.glb_file import GlbFile
+from tests.running.needs import needed
 
 DIRECTIONS = st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(lambda way: math.hypot(*way) > 1e-3)
 
@@ -110,7 +118,7 @@ def test_one_command_makes_motion_parts_report_plots_and_glb(made: Out) -> None:
         read_motion(made.motion)
     motion = read_film(made).in_space
     assert motion is not None
-    assert all(body.mass > 0.0 for body in motion.bodies.values())
+    assert {name for name, body in motion.bodies.items() if body.mass == 0.0} == {"cross_in", "cross_out"}
 
 
 def test_bodies_and_crosses_of_the_glb_move_as_data_json_has_them(made: Out) -> None:
@@ -130,6 +138,47 @@ def test_bodies_and_crosses_of_the_glb_move_as_data_json_has_them(made: Out) -> 
     np.testing.assert_allclose(matrices(turned)[:, :, 0], first, atol=1e-9)
     np.testing.assert_allclose(matrices(turned)[:, :, 1], second, atol=1e-9)
     assert np.abs(place).max() < 1e-12
+
+
+def test_the_page_has_bodies_and_skeleton_where_the_film_has_them(made: Out) -> None:
+    """At rows of data.json and between them, in a browser; the skeleton lies in its dimetric view."""
+    chromium = needed("chromium")
+    view.run("cardan_shaft")
+    film = read_film(made)
+    times = [0.0, float(film.poses.time[77]), 0.5 * float(film.poses.time[100] + film.poses.time[101])]
+    environment = {"NODE_PATH": str(node_modules()), "CHROMIUM": chromium}
+    environment["PAGE_BROWSER"] = str(PAGE / "browser" / "browser.cjs")
+    words = [str(node()), str(Path(__file__).with_name("use_space.cjs")), str(made.view), json.dumps(times)]
+    done = subprocess.run(words, env=os.environ | environment, capture_output=True, text=True, timeout=200, check=False)
+    assert done.returncode == 0, done.stderr[-2000:]
+    page = json.loads(done.stdout)
+    assert not page["errors"]
+    for time, seen in zip(times, page["seen"], strict=True):
+        for name in ("input", "middle", "cross_in", "ground"):
+            place, q = film.poses.over(name, np.array([time]))
+            placed = np.array(seen["bodies"][name]).reshape(4, 4).T
+            np.testing.assert_allclose(placed[:3, :3], matrices(q[0]), atol=1e-6)
+            np.testing.assert_allclose(placed[:3, 3], place[0], atol=1e-7)
+        for name in ("bearing_in", "cross_out"):
+            place = film.poses.joint(name, Moment(time, 0))
+            np.testing.assert_allclose(seen["spots"][name], place, atol=1e-7)
+            np.testing.assert_allclose(seen["joints"][name], np.array(VIEW) @ place, atol=1e-7)
+
+
+def test_the_skeleton_of_the_page_is_carried_to_where_it_is_drawn(made: Out) -> None:
+    """Lines lie between the ends that carry them, which the page moves; all else is recorded over the motion."""
+    skeleton, film = read_skeleton(made.skeleton), read_film(made)
+    assert skeleton.moving is not None
+    carried = [stroke for stroke in skeleton.moving.strokes if stroke.carrier.kind == "line"]
+    assert {stroke.carrier.ends[0].body for stroke in carried} == {"input", "middle", "output"}
+    first = film.poses.time[0]
+    for stroke in carried:
+        ends = [
+            film.poses.carried(end.body, np.array([[end.x, end.y, end.z]], float), np.array([first]))[0]
+            for end in stroke.carrier.ends
+        ]
+        np.testing.assert_allclose(np.reshape(stroke.stroke.points, (-1, 2)), ends @ np.array(VIEW).T, atol=1e-6)
+    assert all(len(stroke.shapes) == len(skeleton.moving.times) for stroke in skeleton.moving.strokes if stroke.shapes)
 
 
 def test_every_period_has_the_same_states_and_the_camera_holds_what_moves(made: Out) -> None:

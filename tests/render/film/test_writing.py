@@ -37,14 +37,12 @@ def test_titles_and_numbers_that_live():
     said = arrows.number(motion, shot)(motion.time[90])
     assert said.startswith("motor  ")
     assert float(said.split()[1].replace("−", "-")) == pytest.approx(1000 * effort[90], abs=0.051)
-    assert said.endswith(" mN m")
+    assert said.endswith(" mN·m")
     point, at = motion.points["P"], motion.time[33]
     speed = float(np.hypot(point.vx[33], point.vy[33]))
     words = arrows.number(motion, Shot(title=Title(number="P")))(at).split()
-    assert words[2] == "mm/s"
-    assert words[4] == "km/h"
+    assert words[2:] == ["mm/s"]
     assert float(words[1]) == pytest.approx(1000 * speed, abs=1)
-    assert float(words[3]) == pytest.approx(3.6 * speed, abs=1e-2)
     assert arrows.number(motion, Shot())(0.0) == ""
     with pytest.raises(UserError, match="motor"):
         refuse_unknown(Shot(title=Title(number="moto")), Names("four_bar", (), ("P",), {}, ("motor",)))
@@ -107,7 +105,7 @@ WORDS = st.text("abcdefgh IlmW", min_size=1, max_size=60).map(str.strip).filter(
 ROWS = st.lists(
     st.builds(
         LegendRow,
-        number=st.sampled_from(["5 N", "100 mN m", "0.05 m/s"]),
+        number=st.sampled_from(["5 N", "100 mN·m", "0.05 m/s"]),
         words=st.sampled_from(["forces", "torques of joints", "accelerations, peaks cut"]),
         colour=st.just((1.0, 0.5, 0.1)),
         length=st.floats(0.02, 0.33),
@@ -172,7 +170,7 @@ def test_words_have_a_contrast_of_four_and_a_half_to_whatever_is_behind_them(
     behind: tuple[int, int, int], dark: bool, shape: tuple[int, int]
 ):
     """Measured where a letter hides nothing any more: three pixels beside those that have its ink alone."""
-    number = "motor  −0.0143 N m"
+    number = "motor  −0.0143 N·m"
     lines = composing.lines("Four bar", [number], "4 times slower", shape[0] / shape[1])
     page = Image.new("RGB", shape, behind)
     words.lay_words(page, Writing(lines=lines, on_bright=dark), number)

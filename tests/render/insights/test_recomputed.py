@@ -9,8 +9,6 @@ import msgspec
 import numpy as np
 import pytest
 
-from mechanisms.stages.solve.motion_file import to_motion
-from mechanisms.stages.solve.stage import solve
 from render.insights import Insight, insights
 from render.insights.causes import parts_of
 from render.insights.insight import LANGUAGES, sentences
@@ -18,7 +16,6 @@ from render.insights.ranking import ANEW, WEIGHTS
 from render.insights.seen import Seen
 from render.insights.stops import fastest, stops, words_of
 from shared.contract import Motion
-from shared.stage.paths import planar_names
 from tools.models.motions import bouncing_ball, four_bar_motion
 
 MOTION = four_bar_motion()
@@ -152,29 +149,3 @@ def test_stops_are_asked_for_by_name() -> None:
     assert {"rocker turns back", "motor", *MOTION.joints, fastest(MOTION)[0]} <= set(asked)
     assert "floor: impact" in [words for each in stops(bouncing_ball()) for words in words_of(each)]
     assert all(each.sentence(language) for each in stops(MOTION) for language in ("en", "de"))
-
-
-# -- the gallery -----------------------------------------------------------------------------------------------------
-
-LONGEST = 150
-"""Letters of a sentence; more than a caption holds."""
-SMALL_TALK = ("stroke", "bend", "reach", "even_return", "period", "energy_kept")
-"""Kinds that are no insight by themselves."""
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", planar_names())
-def test_every_mechanism_of_the_gallery_has_three_insights_that_are_not_trivial(name: str) -> None:
-    solution, sources = solve(name, None)
-    findings = insights(to_motion(solution, None, "0" * 64, {}, sources))
-    telling = [each for each in findings if each.kind not in SMALL_TALK]
-    assert len({each.kind for each in telling}) >= 3, [each.sentence() for each in findings]
-    for each in findings:
-        for language in ("en", "de"):
-            said = each.sentence(language)
-            assert len(said) <= LONGEST, said
-            assert said[0].isupper() or said[0].isdigit()
-            assert said.endswith(".")
-            assert not re.search(r"[{}_]|\bnan\b|no number", said), said
-        assert each.start <= each.end
-        assert np.isfinite(each.number)

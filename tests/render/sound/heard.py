@@ -15,6 +15,7 @@ from mechanisms.stages.solve.motion_file import to_motion
 from render.film.clock import Clock
 from render.film.poses import Poses
 from render.frames.encode import ffmpeg
+from render.sound.mix import energies
 from shared.contract import BodyParts, Mass, Motion, Mount, Piece
 from shared.contract.shot import Shot
 
@@ -74,6 +75,14 @@ def gears(turns: float = 10.0, teeth: tuple[int, int] = (20, 20)) -> Solution:
     m.torque("load", second, 0.5)
     m.start_near(first=0, second=0)
     return m.sweep(steps=180)
+
+
+def short_term(wave: np.ndarray, step: float) -> np.ndarray:
+    """Loudness (LUFS) of each 3 s of waves (2, n), a ``step`` (s) after each other, as EBU R 128 weighs them."""
+    square = energies(np.fft.rfft(wave), wave.shape[1])
+    sums, every = np.concatenate([[0.0], np.cumsum(square)]), round(1000 * step)
+    starts = np.arange(0, len(square) - 3000, every)
+    return -0.691 + 10 * np.log10(np.maximum((sums[starts + 3000] - sums[starts]) / 3000, 1e-10))
 
 
 def measured(file: Path) -> tuple[float, float]:

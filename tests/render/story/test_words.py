@@ -17,7 +17,7 @@ from render.film.story import frame
 from render.film.story.frame import Caption, Note, Over
 from render.film.story.words import TABLE, captions_of, chapters, rate_words, srt, words_in
 from render.frames.story.drawing import Drawing, _facts, is_on_arrow
-from render.frames.story.telling import Telling, telling_of, without_slow
+from render.frames.story.telling import Telling, telling_of
 from render.presets import preset_named
 from shared.contract import Mount
 from shared.contract.shot import Camera, Shot
@@ -172,7 +172,7 @@ def test_panels_stand_over_each_other_at_the_right_edge_clear_of_captions(out_ro
         assert row.argmax() == pytest.approx((right - left) / 2, abs=2)
 
 
-FACTS = ["Repeats after 8 s", "crank reaches 10.8 mm/s", "motor up to 38.3 mN m", "largest reaction 5.2 N at O"]
+FACTS = ["Repeats after 8 s", "crank reaches 10.8 mm/s", "motor up to 38.3 mN·m", "largest reaction 5.2 N at O"]
 
 
 def test_lines_break_between_facts() -> None:
@@ -182,11 +182,6 @@ def test_lines_break_between_facts() -> None:
     long = "crank reaches a speed that takes many more words than any line of a picture has room for"
     _, broken = _facts(long, 13.0, 400.0, 2)
     assert " ".join(broken) == long
-
-
-def test_speeds_below_a_walk_have_no_km_h() -> None:
-    assert without_slow("crank reaches 10.8 mm/s (0.0388 km/h)") == "crank reaches 10.8 mm/s"
-    assert without_slow("ball reaches 4.43 m/s (15.9 km/h)") == "ball reaches 4.43 m/s (15.9 km/h)"
 
 
 @pytest.mark.parametrize("language", sorted(TABLE))

@@ -24,6 +24,12 @@ const frame = (page) => page.evaluate(() => new Promise((done) => requestAnimati
       });
     };
     await look("2d");
+    await page.evaluate(() => window.mbsd.app.store.set({ view: "3d", cut: 0.2 }));
+    await frame(page);
+    seen.phones.at(-1).inside = await page.evaluate(() => { const box = document.querySelector(".inside").getBoundingClientRect(), rows = [...document.querySelectorAll(".inside :is(input, select)")].map((one) => one.getBoundingClientRect()); return { left: Math.min(...rows.map(({ left }) => left)), right: Math.max(...rows.map(({ right }) => right)), least: Math.min(...rows.map(({ width }) => width)), high: box.height, under: document.querySelector(".chips").getBoundingClientRect().bottom <= box.top + 1 }; });
+    await page.screenshot({ path: path.join(folder, `${name}-inside.png`) });
+    await page.evaluate(() => window.mbsd.app.store.set({ view: "2d", cut: 0 }));
+    await frame(page);
     await page.evaluate(() => scrollTo(0, 600));
     await frame(page);
     await look("curves");

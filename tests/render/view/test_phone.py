@@ -77,6 +77,15 @@ def test_fingers_reach_everything_and_no_words_overlap(seen: tuple[Out, dict[str
         assert phone["errors"] == [], where
 
 
+def test_sliders_that_look_inside_have_a_row_of_their_own(seen: tuple[Out, dict[str, Any]]) -> None:
+    for phone in (phone for phone in seen[1]["phones"] if "inside" in phone):
+        inside = phone["inside"]
+        assert inside["under"], phone["name"]
+        assert inside["left"] >= 0, phone["name"]
+        assert inside["right"] <= phone["room"], phone["name"]
+        assert inside["least"] > 60
+
+
 def test_the_scrubber_has_a_row_of_its_own_and_the_speed_one_honest_word(seen: tuple[Out, dict[str, Any]]) -> None:
     _, observed = seen
     for phone in observed["phones"]:

@@ -38,19 +38,25 @@ async function main() {
   await page.goto(address);
   await until(() => document.querySelector(".live .state")?.textContent === "making parts");
   saw.first = await state();
-  saw.parts = await shown(0.2);
-  await picture("first");
-
-  const field = page.locator('input[type=number][aria-label="length, as a number"]');
-  await field.fill("0.25");
-  await field.press("Enter");
-  await tip(0.25);
+  const field = page.locator('input[type=number][aria-label="length, as a number"]'), type = async (length) => {
+    await field.fill(String(length));
+    await field.press("Enter");
+    await tip(length);
+  };
+  const come = () => until(() => mbsd.app.payload.solid && mbsd.app.stage.solid?.parts && document.querySelector(".live .state").textContent === "parts stretched");
+  await type(0.25); // they come while the number is another
+  await come();
   saw.slid = await placed();
   await picture("slid");
-  await page.getByRole("button", { name: "Undo" }).click();
-  await tip(0.2);
+  await page.reload();
+  await come();
+  saw.again = await placed();
+  await type(0.2); // the number of the file, typed
   await until(() => !mbsd.app.payload.other);
   saw.back = await placed();
+  saw.unchanged = await page.evaluate(() => [document.querySelector(".slide .back").hidden, [...document.querySelectorAll(".push")].find((one) => /Write/.test(one.textContent)).disabled]);
+  saw.parts = await shown(0.2);
+  await picture("first");
 
   await ask("longer");
   await tip(0.3);

@@ -78,7 +78,9 @@ def test_parts_follow_the_skeleton(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert saw["errors"] == []
     assert saw["first"] == {"solid": False, "state": "making parts"}
     assert saw["parts"] == pytest.approx(0.2, abs=0.001)
-    assert saw["slid"] == {"solid": True, "length": pytest.approx(0.25, rel=1e-3), "other": True, "clear": 0.62}
+    slid = {"solid": True, "length": pytest.approx(0.25, rel=1e-3), "other": True, "clear": 0.62}
+    assert (saw["slid"], saw["again"]) == (slid, slid), "parts that come later, and a page that does"
+    assert saw["unchanged"] == [True, True], "a number equal to the file's is not changed"
     assert saw["back"] == {"solid": True, "length": pytest.approx(0.2, rel=1e-3), "other": False, "clear": 1}
     stretched = {"solid": True, "length": pytest.approx(0.3, rel=1e-3), "other": True, "clear": 0.62}
     assert saw["longer"] == stretched | {"state": "making parts"}, "the old parts serve meanwhile"

@@ -27,7 +27,7 @@ def page(live: Served) -> Iterator[Page]:
         elif state["values"]:
             tab.say(do="set", values={number["name"]: number["value"] for number in state["numbers"]}, final=True)
             tab.hear("motion")
-        live.session.history.keep(set())
+        live.session.history.keep({})
         yield tab
 
 

@@ -6,7 +6,6 @@ In this order, a chapter each:
     round.py      round solids along any axis: rods, eyes, yokes, cups, blocks
     ends.py       what each joint asks of its two bodies, and of its own massless link
     bodies.py     a body: its ends joined by straight rods, discs and balls
-    meeting.py    parts of two bodies that would meet, which is an error
     base.py       posts from the joints of ground to the base, where nothing passes
     machine.py    the face: all solids by body; or the joint for which there is no shape
 

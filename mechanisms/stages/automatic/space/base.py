@@ -62,8 +62,8 @@ class Base:
             for turn in range(WAYS if step else 1):
                 angle = 2.0 * math.pi * turn / WAYS
                 aside = step * s.rod * (math.cos(angle) * flat + math.sin(angle) * side)
-                if stand.is_bored and step and abs(aside @ stand.axis) > 0.5 * step * s.rod:
-                    continue  # along the shaft
+                if stand.is_bored and step and abs(aside @ stand.axis) > 0.2 * step * s.rod:
+                    continue  # it would meet the collars of the shaft
                 if not step and through:
                     continue
                 path = [place, place + aside, self._foot(place + aside)]

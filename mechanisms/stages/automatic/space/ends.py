@@ -30,10 +30,12 @@ AXIAL = 0.85
 """Cosine to the axis of a joint above which a body runs along it."""
 WIDEST_CUP, WIDEST_RING = math.radians(62.0), math.radians(34.0)
 """Largest swing of a neck in a cup, and of a ball's stud in a ring."""
-NECK = math.radians(24.0)
-"""Half of the angle that a neck takes at its ball."""
+RIM = math.radians(5.0)
+"""Angle at the joint's centre between a neck that swings farthest and the rim of its cup."""
 LEAVES = 0.45
 """Cosine to the pin above which a rod leaves an eye by an elbow."""
+THIN = 0.8
+"""Radius of a link's rod, in rods."""
 COLLAR = 0.35
 """Half width of a collar, in rods."""
 Line = tuple[Array, Array, float]
@@ -170,6 +172,8 @@ class Ends:
             ]
             pin = shapes.fused([shapes.disc(place, axis, s.pin, reach), *heads], [])
             end.parts.append(("pin", pin, "steel", 0))
+            head = (reach + 0.45 * s.rod) * axis
+            end.lines.append((place - head, place + head, 1.35 * s.pin))
         self.ends[marker.body.name].append(end)
 
     def _journal(self, joint: Joint) -> None:
@@ -188,7 +192,9 @@ class Ends:
             offset = float(np.mean(nodes)) if nodes else 0.0
             end.node = place + offset * axis
             boss = end.node
-            bearing = offset + side * (s.eye[1] + s.play + s.block)
+            swept = [shapes.extent(line, side * axis) for other in self.ends[own.body.name] for line in other.lines]
+            face = max([side * (place @ axis + offset) + s.eye[1], *swept])  # beyond all that sweeps under the block
+            bearing = side * (face + s.play + s.block) - place @ axis
             tip = place + (bearing + side * far) * axis
             end.adds = [shapes.disc(boss, axis, s.eye[0], s.eye[1]), shapes.rod(boss, tip, radius)]
             end.adds.append(shapes.disc(tip - side * COLLAR * s.rod * axis, axis, collar, COLLAR * s.rod))
@@ -322,7 +328,9 @@ class Ends:
         s, place = self.sizes, self.moves.place(ball)
         end = End(joint.name, place, [shapes.ball(place, s.ball, neck)], lines=[(place, place, s.ball)])
         self.ends[ball.body.name].append(end)
-        self._cup(joint, cup, opening, swing)
+        shape = ball.body.shape
+        own = MM * shape.radius if shape is not None and shape.kind == "rod" else 0.0
+        self._cup(joint, cup, opening, swing, own or s.rod)
 
     def _swing(self, body: str, world: Array) -> tuple[Array, float]:
         """Return the mean of directions (T, 3) of the world as a body sees them, and the largest angle to it (rad)."""
@@ -332,7 +340,8 @@ class Ends:
             return seen[0], math.pi
         return unit(mean), float(np.arccos(np.clip(seen @ unit(mean), -1.0, 1.0)).max())
 
-    def _cup(self, joint: Joint, marker: Marker, opening: Array, swing: float) -> None:
+    def _cup(self, joint: Joint, marker: Marker, opening: Array, swing: float, neck: float) -> None:
+        """Shape a cup that opens along ``opening`` for a ball whose neck, of that radius, swings so far."""
         if swing > WIDEST_CUP:
             raise UserError(
                 f"{self.moves.m.name}: joint '{joint.name}' swings by {math.degrees(swing):.0f} degrees to both sides "
@@ -340,7 +349,7 @@ class Ends:
                 "parts.py"
             )
         s, place = self.sizes, self.moves.place(marker)
-        rim = s.ball * min(0.3, math.cos(swing + NECK + math.radians(8.0)))
+        rim = s.ball * min(0.3, math.cos(swing + math.asin(min(neck / s.ball, 1.0)) + RIM))
         if marker.body.name == "ground":
 
             def shape(way: Array) -> tuple[cq.Workplane, int]:
@@ -353,7 +362,7 @@ class Ends:
             joint.name, back, [shapes.ball(place, s.cup, opening), shapes.rod(place - s.ball * opening, back, s.rod)]
         )
         end.cuts = self._hollow(place, opening, rim)
-        end.lines = [(place, back, s.cup)]
+        end.lines = [(place, place, s.cup), (place, back, s.rod)]
         rest = self._toward(marker) - place if self._has_rest(marker) else -opening
         if unit(rest) @ opening > -0.5:
             end.adds.append(shapes.ball(back, s.rod, opening))
@@ -399,9 +408,9 @@ class Ends:
                 cuts.append(shapes.ball(ends[k], ball + s.play, z))
                 holes += 1
             else:
-                self._cup(joint, marker, opening, swing)
+                self._cup(joint, marker, opening, swing, THIN * s.rod)
                 solids.append(shapes.ball(ends[k], s.ball, x))
-        solids.insert(0, shapes.rod(ends[0], ends[1], 0.8 * s.rod))
+        solids.insert(0, shapes.rod(ends[0], ends[1], THIN * s.rod))
         main = ("rod", shapes.fused(solids, cuts), "steel", holes)
         self.links.append(Link(joint.name, [main], [(ends[0], ends[1], s.rod)], holder.body.name, upright))
 
@@ -418,10 +427,15 @@ class Ends:
         arm = self._side_of_arm(marker, axis)
         side = arm or (1.0 if axis @ (self._toward(marker) - place) >= 0.0 else -1.0)
         ball, ring, half, stud = s.ring
-        foot = place + side * (ring * math.sin(WIDEST_RING) + half + s.eye[1] + 0.2 * s.rod) * axis
+        far = ring * math.sin(lean) + half * math.cos(lean) + 0.3 * s.rod
+        rest = unit(self._toward(marker) - place - side * far * axis)
+        slope = max(-side * float(rest @ axis), 0.0)
+        steep = math.sqrt(1.0 - min(slope, 0.9) ** 2)
+        far += max(s.eye[1], steep * s.rod + (math.hypot(ring, half) + s.rod) * min(slope, 0.9) / steep)
+        foot = place + side * far * axis  # so far that neither it nor the arm from there comes to the ring
         end = End(joint.name, foot, [shapes.ball(place, ball, axis), shapes.rod(place, foot, stud)])
         end.adds.append(shapes.disc(foot, axis, 1.35 * s.rod, s.eye[1]))
-        end.lines = [(place, foot, s.ball)]
+        end.lines = [(place, place, ball), (place, foot, stud), *shapes.tube_lines(foot, axis, 1.35 * s.rod, s.eye[1])]
         return end, axis
 
     # -- bodies about a joint -----------------------------------------------------------------------------------

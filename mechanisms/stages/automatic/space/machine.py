@@ -11,7 +11,6 @@ from mbsd.spatial.results.solution import Solution
 from mechanisms.stages.automatic.space.base import Base
 from mechanisms.stages.automatic.space.bodies import body_parts
 from mechanisms.stages.automatic.space.ends import Ends, Line, Link, Part
-from mechanisms.stages.automatic.space.meeting import refuse_meeting
 from mechanisms.stages.automatic.space.moves import Array, Moves
 from mechanisms.stages.automatic.space.round import across
 from shared.contract.parts import mounted_in_space
@@ -47,7 +46,6 @@ def solids_in_space(solution: Solution) -> Bodies:
         moves.poses[name] = link_poses(moves, link)
         made[name] = _solids(name, link.parts, used)
         made.links[name] = (link.joint, link.body, (float(link.z[0]), float(link.z[1]), float(link.z[2])))
-    refuse_meeting(moves, lines, ends.stands, {name: link[0] for name, link in made.links.items()})
     base = Base(moves, lines, ends.stands, np.array(mount.up))
     made["ground"] = _solids("ground", base.parts(), used)
     made.along = made.space = True

@@ -87,6 +87,14 @@ def tube_lines(middle: Array, axis: Array, radius: float, half: float) -> list[t
     return [(place - (half - thin) * axis, place + (half - thin) * axis, thin) for place in rim]
 
 
+def extent(line: tuple[Array, Array, float], axis: Array) -> float:
+    """Return how far a cylinder (two places and a radius), or a ball where they are one, reaches along a unit axis."""
+    a, b, radius = line
+    length = float(np.linalg.norm(b - a))
+    lean = float((b - a) @ axis) / length if length > 0.0 else 0.0
+    return max(float(a @ axis), float(b @ axis)) + radius * math.sqrt(max(1.0 - lean**2, 0.0))
+
+
 def fused(solids: list[cq.Shape], cuts: list[cq.Shape]) -> cq.Workplane:
     """Return one solid of several that overlap, less others."""
     made = solids[0]

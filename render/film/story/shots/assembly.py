@@ -79,8 +79,10 @@ def _side(places: list[tuple[float, float, str, str]], right: bool, row: float, 
 
 # The assembly: parts lift apart in the order in which they are put together, get their names, and settle in.
 
-WHOLE, LIFTS, APART, SETTLED = 0.2, 1.7, 2.0, 0.2
-"""Seconds: as a whole, coming apart (and together), apart, and as a whole again."""
+WHOLE, LIFTS, SETTLED = 0.2, 1.7, 0.2
+"""Seconds: as a whole, coming apart (and together), and as a whole again."""
+APART, NAME, MOST_APART = 0.8, 0.2, 1.8
+"""Seconds apart: of none, more for each name, and at most."""
 LYING, STANDING = (12.0, -6.0), (42.0, 10.0)
 """Degrees: azimuth and elevation beside those of the shot for what lies, whose layers are seen from lower down; for
 what stands an azimuth on the side of the shot's, from which layers are seen beside each other, and more elevation."""
@@ -99,7 +101,7 @@ def assembly(scenery: Scenery) -> Shot | None:
     top = float(points[:, 2].max())
     near, wide = (raised(_stand(scenery, held), scenery.up, top) for held in (together, points))
     blur = scenery.film.shot.camera.blur
-    whole, rests = scenery.whole(WHOLE), scenery.whole(APART)
+    whole, rests = scenery.whole(WHOLE), scenery.whole(min(APART + NAME * len(_named(scenery)), MOST_APART))
     out = whole + move
     back = out + rests
     seconds = back + move + SETTLED

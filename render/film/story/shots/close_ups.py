@@ -21,8 +21,9 @@ from shared.stage.errors import UserError
 
 # A close look along one joint with a shallow depth, while the machine moves slowly.
 
-MOVES, LEAST, AFTER = 3.8, 2.6, 0.2
-"""Seconds of the move, those for which its caption stands at least, and those after the move."""
+MOVES, LEAST, AFTER, READ = 3.8, 2.6, 0.2, 24.0
+"""Seconds of the move, those that the shot takes at least for a long caption, and those after the move; letters of a
+caption that are read in a second."""
 LENS, WIDE = 90.0, 0.36
 """mm, and the width of what is seen, in sizes of the machine."""
 SLOWER = 0.4
@@ -37,7 +38,7 @@ LYING, STANDING = ((-34.0, 34.0), (14.0, 44.0)), ((-40.0, 16.0), (6.0, 26.0))
 
 def macro(scenery: Scenery) -> Shot | None:
     """Return the macro, in which most happens after EVENT of its move; None for a machine without joints."""
-    name = _joint(scenery)
+    name = busiest_joint(scenery)
     if name is None:
         return None
     clock, move = scenery.film.clock, scenery.moving(MOVES)
@@ -47,7 +48,8 @@ def macro(scenery: Scenery) -> Shot | None:
     ramp = Ramp(
         begin if clock.repeats else max(clock.start, begin), ((move * 0.75, rate, rate), (move * 0.25, rate, 0.0))
     )
-    stands, whole = _stands(scenery), scenery.whole(max(move + AFTER, LEAST))
+    stands, text = _stands(scenery), _caption(scenery, name)
+    whole = scenery.whole(max(move + AFTER, min(1.0 + len(text) / READ, LEAST)))
 
     def picture(s: float) -> Picture:
         time = ramp.time_at(min(s, move))
@@ -55,8 +57,6 @@ def macro(scenery: Scenery) -> Shot | None:
         a, b = (_aimed(scenery, stand, _place(scenery, name, at, event)) for stand in stands)
         camera = focused(between(a, b, eased(s / move)), scenery.up, scenery.blur)
         return Picture(at=at, camera=camera, hidden="trails")
-
-    text = _caption(scenery, name)
 
     def over(s: float) -> Over:
         shown = shown_in(s, 0.2, whole - 0.2)
@@ -71,7 +71,7 @@ def _busy(scenery: Scenery) -> float:
     return scenery.reasons[0].start if scenery.reasons else scenery.film.clock.start
 
 
-def _joint(scenery: Scenery) -> str | None:
+def busiest_joint(scenery: Scenery) -> str | None:
     """Return the joint that is asked for, else the one where most happens.
 
     Where bodies meet comes before pins, above before below; a pin that stands comes last.
@@ -103,6 +103,12 @@ def _height(scenery: Scenery, name: str) -> float:
     heights = [top for body in bodies for top in film.space.tops_at(body, x, y, at)]
     heights = heights or [top for body in bodies for top in tops_of(film.parts, body)]
     return max(heights, default=scenery.top)
+
+
+def place_at(scenery: Scenery, name: str) -> tuple[float, float, float]:
+    """Return where a joint is when most happens there (m, world)."""
+    time = float(scenery.film.motion.time[int(happening(scenery.film.motion, name).argmax())])
+    return _place(scenery, name, scenery.loop_frame(time), time)
 
 
 def _place(scenery: Scenery, name: str, at: float, event: float) -> tuple[float, float, float]:

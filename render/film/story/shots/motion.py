@@ -2,16 +2,42 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from render.film.camera import point
+from render.film.framing import in_studio
 from render.film.story.frame import Caption, Over, Picture, Shot, shown_in
 from render.film.story.ramps import Ramp, Warp, eased, warped
-from render.film.story.scenery import Scenery, between, turned
+from render.film.story.scenery import Scenery, Stand, between, raised, turned
+from render.film.story.shots.close_ups import busiest_joint, place_at
 from shared.contract.quantity import figures
 
 # The title: name and what it is, over the machine, which moves from the first picture on.
 
 SECONDS, FADE = 2.4, 0.5
+
+
+SMALL, CLOSER, CLOSEST = 0.15, 0.22, 0.25
+"""Parts of the picture's area: a machine that takes less opens and ends closer, so that it takes so much, from this
+part of the distance at least."""
+
+
+def opening(scenery: Scenery) -> Stand:
+    """Return the stand of title and end: all of the machine, or of a small one the part where most happens."""
+    whole = scenery.stand(strip=False)
+    if scenery.share(scenery.stand()) >= SMALL or scenery.film.travel is not None:
+        return whole
+    name = busiest_joint(scenery)
+    place = np.array(whole.target) if name is None else in_studio(np.array(place_at(scenery, name)), scenery.up)
+    near = whole
+    for part in np.linspace(1.0, CLOSEST, 31)[1:]:  # the joint keeps its place in the picture
+        target = point(place + part * (np.array(whole.target) - place))
+        near = replace(whole, target=target, distance=part * whole.distance)
+        if scenery.share(near) >= CLOSER and not scenery.misses(near):
+            break
+    return raised(near, scenery.up, scenery.top)
 
 
 def title(scenery: Scenery, after: Shot | None) -> Shot | None:
@@ -20,7 +46,7 @@ def title(scenery: Scenery, after: Shot | None) -> Shot | None:
         return None
     seconds = scenery.whole(SECONDS)
     begin, rate = _run(scenery, seconds)
-    stand = scenery.stand(strip=False)
+    stand = opening(scenery)
 
     def model(s: float) -> float:
         return begin + rate * s
@@ -47,24 +73,25 @@ def _run(scenery: Scenery, seconds: float) -> tuple[float, float]:
 
 SWING = 9.0
 """Degrees of azimuth to each side."""
-SHORT, LONG = 5.0, 9.0
-"""Seconds that the shot takes at least and at most, holds left out."""
-REST = 0.7
-"""Seconds for which a motion that ends stands before it begins anew."""
+SHORT, STILL, LONG = 5.0, 7.5, 9.0
+"""Seconds that the shot takes at least, where the camera stands and a second showing costs nothing, and at most."""
+REST, OF = 0.3, 0.2
+"""Seconds for which a motion that ends stands before it begins anew, and at most that part of it."""
 
 
 def motion(scenery: Scenery) -> Shot:
     """Return whole turns at the rate of the loop film; a longer motion once, fast where it is dull."""
     clock = scenery.film.clock
     whole = clock.moving / scenery.fps
-    showings = max(1, int(np.ceil(SHORT / (whole if clock.repeats else whole + REST) - 1e-9)))
+    each = scenery.whole(whole if clock.repeats else whole + min(REST, OF * whole))  # showings share their pictures
+    showings = max(1, int(np.ceil((SHORT if scenery.turning else STILL) / each - 1e-9)))
     if whole > LONG:
         return _shot(scenery, _lively(scenery, clock.start, clock.end, LONG), LONG)
     if clock.repeats:
-        turns = Ramp(clock.start, ((showings * whole, clock.rate, clock.rate),))
-        return _shot(scenery, turns, turns.seconds)
-    once = Ramp(clock.start, ((whole, clock.rate, clock.rate), (REST, 0.0, 0.0)))
-    return _shot(scenery, once, showings * once.seconds, once.seconds)
+        rate = (clock.end - clock.start) / each
+        return _shot(scenery, Ramp(clock.start, ((showings * each, rate, rate),)), showings * each)
+    once = Ramp(clock.start, ((whole, clock.rate, clock.rate), (max(each - whole, 0.0), 0.0, 0.0)))
+    return _shot(scenery, once, showings * each, each)
 
 
 def _lively(scenery: Scenery, start: float, end: float, seconds: float) -> Warp:
@@ -119,8 +146,8 @@ def last(scenery: Scenery) -> Shot:
     """Return the shot from a little aside into the three-quarter view, and to the moment of the poster."""
     clock, stop, runs = scenery.film.clock, scenery.moving(MOVES), scenery.whole(SECONDS)
     at, rate = _run(scenery, runs)
-    end = scenery.stand(strip=False)
-    begin = turned(end, -14.0, 3.0, 1.1)
+    end = opening(scenery)
+    begin = turned(scenery.stand(strip=False), -14.0, 3.0, 1.1)
 
     def model(s: float) -> float:
         return at + rate * (s - stop) if clock.repeats else max(at + rate * (s - stop), clock.start)

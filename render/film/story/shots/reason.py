@@ -11,8 +11,7 @@ from render.film.story.frame import Caption, Note, Over, Picture, Shot, shown_in
 from render.film.story.ramps import Ramp, eased, into
 from render.film.story.scenery import Scenery, Stand, between, turned
 from render.film.story.words import plain
-from render.insights.insight import in_words
-from shared.contract.quantity import figures
+from shared.contract.quantity import figures, written
 from shared.contract.signals import SIGNALS
 
 # Numbers beside the largest arrows of a picture that stands still.
@@ -42,7 +41,7 @@ def notes(scenery: Scenery, picture: Picture) -> tuple[Note, ...]:
         name = torque.name.partition(" on ")[0]
         if what is not None and name in what.joints and what.unit in EFFORTS and sweep and not out:
             x, y = project(picture.camera, np.array(middle), wide, high)[0]
-            words = f"{plain(name)}  {in_words(what.number, what.unit)}"
+            words = f"{plain(name)}  {written(what.number, what.unit)}"
             out.append(Note(float(x / wide), float(y / high), 0.0, -1.6, words, SIGNALS["torques"].dark))
     for k in sorted(range(len(rows)), key=lambda k: -lengths[k]):
         if lengths[k] < LEAST * longest or not longest or len(out) == MOST:
@@ -53,7 +52,7 @@ def notes(scenery: Scenery, picture: Picture) -> tuple[Note, ...]:
         way = (tip - tail) / max(float(np.hypot(*(tip - tail))), 1e-9)
         vector = film.arrows.vectors[k]
         name = "weight" if vector.weight else vector.name.partition(" on ")[0].partition(" of ")[2] or vector.name
-        words = f"{plain(name.partition(' on ')[0])}  {in_words(sizes[k], vector.unit)}"
+        words = f"{plain(name.partition(' on ')[0])}  {written(sizes[k], vector.unit)}"
         colour = SIGNALS[vector.row].dark
         out.append(Note(float(tip[0] / wide), float(tip[1] / high), float(way[0]), float(way[1]), words, colour))
     return tuple(out)
@@ -61,7 +60,7 @@ def notes(scenery: Scenery, picture: Picture) -> tuple[Note, ...]:
 
 # The reason: time slows down into an event or a peak, stops, arrows grow, and a caption says what happens there.
 
-GOES, SLOWS, GROWS, STANDS, ON = 1.4, 1.7, 0.8, 1.8, 1.7
+GOES, SLOWS, GROWS, STANDS, ON = 1.4, 1.7, 0.8, 1.7, 1.7
 """Seconds: at the rate of the loop, slowing down, arrows growing, standing still, going on."""
 GOES_AWAY = 0.3
 """Seconds in which arrows go when time goes on."""
@@ -70,7 +69,8 @@ BEFORE, AFTER = (9.0, 3.0), (3.0, 7.0)
 ROUND = 8.0
 """Degrees by which the camera goes round while time stands still, where it turns at all."""
 NEARER = (0.92, 0.96, 1.0, 1.05, 1.1, 1.2, 1.35)
-"""Parts of the distance at which time stands still: the first from which all arrows are in the picture."""
+"""Parts of the distance at which time stands still: the first from which all arrows are in the picture, and neither
+plate nor stand is cut by a sliver."""
 EDGE = 0.03
 """Part of the picture at each side that arrows leave free."""
 
@@ -89,7 +89,8 @@ def reason(scenery: Scenery) -> Shot | None:
     seconds = begins + on
     wide, near = _stands(scenery, ramp.time_at(stop))
     round_it = turned(near, ROUND, 0.0, 1.0)
-    beyond = round_it if scenery.turning and _holds_arrows(scenery, round_it, ramp.time_at(stop)) else near
+    goes_round = scenery.turning and not scenery.misses(round_it)
+    beyond = round_it if goes_round and _holds_arrows(scenery, round_it, ramp.time_at(stop)) else near
 
     def model(s: float) -> float:
         return ramp.time_at(s) if s < begins else after.time_at(s - begins)
@@ -119,7 +120,8 @@ def _stands(scenery: Scenery, time: float) -> tuple[Stand, Stand]:
     """Return the stands: from a little aside, and nearer when time stands still at ``time`` (s)."""
     wide, near = (scenery.stand(*way, arrows=True) for way in (BEFORE, AFTER))
     stands = [Stand(near.target, near.azimuth, near.elevation, part * near.distance, near.lens) for part in NEARER]
-    return wide, next((stand for stand in stands if _holds_arrows(scenery, stand, time)), stands[-1])
+    held = [stand for stand in stands if _holds_arrows(scenery, stand, time)] or stands[-1:]
+    return wide, next((stand for stand in held if not scenery.misses(stand)), held[0])
 
 
 def _holds_arrows(scenery: Scenery, stand: Stand, time: float) -> bool:

@@ -8,12 +8,13 @@
  *   app.payload, app.motion, app.clock
  *   app.select(thing), app.placeOf(thing), app.redraw(), app.hold(on): the view stays while numbers are dragged
  *
+ * options: frame, Curves and keyed are parts of the page that another page has otherwise (article/).
  * live: {drag(thing, [x, y], phase)} is called while a joint or traced point is dragged in the 2D view, in m; phase is
  * "start", "move" or "end". Without it the plane is panned.
  */
 import { Clock } from "./data/clock.js";
 import { KINDS } from "./data/kinds.js";
-import { Motion } from "./data/motion.js";
+import { motionOf } from "./data/space.js";
 import { Plots } from "./plots/plots.js";
 import { Store, same } from "./state.js";
 import { keys } from "./ui/keys.js";
@@ -24,7 +25,7 @@ import { Transport } from "./ui/transport.js";
 import { Stage } from "./ui/stage.js";
 
 export class App {
-  constructor(root, payload, { live = null } = {}) {
+  constructor(root, payload, { live = null, frame = layout, Curves = Plots, keyed = document } = {}) {
     this.live = live;
     this.frame = this.frame.bind(this);
     this.ready = this.asked = false;
@@ -33,13 +34,13 @@ export class App {
       time: payload.clock.start, playing: !still(), speed: 1, selected: null, view: "3d", theme: "auto", apart: 0, cut: payload.solid?.section ?? 0, cutSide: payload.solid?.sawn ? "film" : "front",
       shown: initiallyShown(payload),
     });
-    this.parts = layout(root, this);
+    this.parts = frame(root, this);
     this.slot = this.parts.slot;
     this.themes = themes(this);
     this.stage = new Stage(this);
-    this.plots = new Plots(this);
+    this.plots = new Curves(this);
     this.transport = new Transport(this);
-    keys(this);
+    keys(this, keyed);
     this.store.on(["time"], ({ time }) => { this.motion.to(time); this.redraw(); });
     this.store.on(["selected", "shown", "view", "theme", "apart", "cut", "cutSide"], () => this.redraw());
     this.store.on(["playing"], () => { this.last = 0; this.redraw(); });
@@ -51,7 +52,7 @@ export class App {
 
   take(payload) {
     this.payload = payload;
-    this.motion = new Motion(payload);
+    this.motion = motionOf(payload);
     this.clock = new Clock(payload);
   }
 
@@ -76,27 +77,35 @@ export class App {
 
   select(thing) { this.store.set({ selected: same(thing, this.store.state.selected) ? null : thing }); }
 
-  /** Where a thing is at the moment (m); null of what has no place. @returns {[number, number] | null} */
+  /** Where a thing is in the 2D view at the moment (m); null of what has no place. @returns {[number, number] | null} */
   placeOf(thing) {
-    if (!thing || !this.there(thing)) return null;
-    const { payload, motion } = this;
-    switch (thing.kind) {
-      case "joint": return motion.joint(thing.name);
-      case "point": return motion.point(thing.name);
-      case "body": return motion.centre(thing.name);
+    const { payload, motion } = this, at = this.anchorOf(thing);
+    switch (at?.kind) {
+      case "joint": return motion.joint(at.name);
+      case "point": return motion.point(at.name);
+      case "body": return motion.centre(at.name);
       case "contact": {
-        const one = payload.contacts[thing.name];
+        const one = payload.contacts[at.name];
         return [motion.linear(one.x), motion.linear(one.y)];
       }
-      default: {
-        const pair = payload[KINDS[thing.kind]][thing.name].bodies ?? [];
-        const joint = Object.keys(payload.joints).find((name) => {
-          const { pair: how, bodies } = payload.joints[name];
-          return how === "pin" && pair.length > 1 && bodies.every((body) => pair.includes(body));
-        });
-        return joint ? motion.joint(joint) : null;
-      }
+      default: return null;
     }
+  }
+
+  /** The same among the parts. @returns {[number, number, number] | null} */
+  spotOf(thing) {
+    const at = this.anchorOf(thing), tops = () => Object.values(this.payload.solid.heights.bodies);
+    if (!at) return null;
+    return at.kind === "contact" ? [...this.placeOf(thing), Math.max(0, ...tops())] : this.motion.spot(at.kind, at.name);
+  }
+
+  /** The thing itself where it has a place, else the joint between its bodies. @returns {import("./state.js").Thing | null} */
+  anchorOf(thing) {
+    if (!thing || !this.there(thing)) return null;
+    if (["joint", "point", "body", "contact"].includes(thing.kind)) return thing;
+    const { joints, space, [KINDS[thing.kind]]: { [thing.name]: { bodies: pair = [] } } } = this.payload;
+    const name = Object.keys(joints).find((one) => (space || joints[one].pair === "pin") && pair.length > 1 && joints[one].bodies.every((body) => pair.includes(body)));
+    return name ? { kind: "joint", name } : null;
   }
 
   play(on = !this.store.state.playing) {
@@ -136,5 +145,5 @@ export class App {
 
 const still = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 
-/** @param {HTMLElement} root  @param {import("./data/decode.js").Payload} payload  @param {{live?: any}} options */
+/** @param {HTMLElement} root  @param {import("./data/decode.js").Payload} payload  @param {{live?: any, frame?: Function, Curves?: any, keyed?: EventTarget}} options */
 export function mount(root, payload, options = {}) { return new App(root, payload, options); }

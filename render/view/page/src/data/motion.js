@@ -6,6 +6,8 @@
  * @typedef {{body: string, x?: number, y?: number}} End  a point of a body, in its frame (m)
  */
 
+import { KINDS } from "./kinds.js";
+
 const REST = { x: 0, y: 0, theta: 0 };
 
 export class Motion {
@@ -91,6 +93,19 @@ export class Motion {
     const [x, y] = this.payload.bodies[name].com;
     return this.place({ body: name, x, y });
   }
+
+  /** Where a joint, point or body is among the parts. @returns {[number, number, number]} */
+  spot(kind, name) {
+    const [x, y] = kind === "joint" ? this.joint(name) : kind === "point" ? this.point(name) : this.centre(name);
+    return [x, y, this.payload.solid?.heights[KINDS[kind]]?.[name] ?? 0];
+  }
+
+  /** A point of a body among the parts. @returns {[number, number, number]} */
+  where({ z = 0, ...end }) { return [...this.place(end), z]; }
+
+  /** A place in the 2D view, and the way that a torque turns there. */
+  flat(place) { return place; }
+  facing() { return 1; }
 
   /** All bodies at the moment. @returns {Record<string, Pose>} */
   poses() {

@@ -7,7 +7,7 @@ const DOWN = ["m", "m/s", "s"];
 const PLAIN = ["m/s²", "rad", "rad/s", "rad/s²", "°", "%", "cm³", "km/h", "rpm", "bar", "l/min", "1", ""];
 const STEPS = {
   kg: [[1e3, 1e-3, "t"], [1, 1, "kg"], [0, 1e3, "g"]],
-  "kg m²": [[0.01, 1, "kg m²"], [0, 1e4, "kg cm²"]],
+  "kg m²": [[0.01, 1, "kg·m²"], [0, 1e4, "kg·cm²"]],
 };
 const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
 const ANGLES = [1, 2, 5, 10, 15, 30, 45, 90, 180, 360];
@@ -15,7 +15,7 @@ const DIGITS = 4, LIVE = 6;
 
 /** `12.3 mN`, `0 N`, `250 g`. @param {number} value SI  @param {string} unit */
 export function written(value, unit, digits = 3) {
-  if (!Number.isFinite(value)) return Number.isNaN(value) ? `no number of ${unit}` : `${value < 0 ? "−" : ""}∞ ${unit}`.trim();
+  if (!Number.isFinite(value)) return Number.isNaN(value) ? `no number of ${dotted(unit)}` : `${value < 0 ? "−" : ""}∞ ${dotted(unit)}`.trim();
   const [factor, named] = prefixed(Number(Math.abs(value).toPrecision(digits)), unit);
   const kept = Math.abs(value * factor) < 1000 ? digits : Math.max(digits, DIGITS);
   return `${figures(value * factor, kept)}${named === "°" || named === "%" ? "" : " "}${named}`.trim();
@@ -23,12 +23,15 @@ export function written(value, unit, digits = 3) {
 
 /** The factor from SI, and the unit with its prefix. @param {number} largest  @returns {[number, string]} */
 export function prefixed(largest, unit) {
-  if (PLAIN.includes(unit) || !largest || !Number.isFinite(largest)) return [1, unit];
+  if (PLAIN.includes(unit) || !largest || !Number.isFinite(largest)) return [1, dotted(unit)];
   if (unit in STEPS) return STEPS[unit].find(([least]) => Math.abs(largest) >= least).slice(1);
   let power = Math.min(Math.max(3 * Math.floor(Math.log10(Math.abs(largest)) / 3 + 1e-9), -12), 12);
   if (DOWN.includes(unit)) power = Math.min(power, 0);
-  return [10 ** -power, PREFIXES[power] + unit];
+  return [10 ** -power, PREFIXES[power] + dotted(unit)];
 }
+
+/** A product of units with a dot: `N·m`. */
+export const dotted = (unit) => unit.replaceAll(" ", "·");
 
 /** So many significant digits, no exponent. @param {number} value */
 export function figures(value, digits = DIGITS) {
@@ -61,7 +64,7 @@ export function live(series, unit, digits = DIGITS) {
 /** What an axis says: `force / kN`, `velocity / (m/s)`. */
 export function labelled(words, unit) {
   if (!unit || unit === "1") return words;
-  return /[/ ]/.test(unit) ? `${words} / (${unit})` : `${words} / ${unit}`;
+  return /[/ ·]/.test(unit) ? `${words} / (${dotted(unit)})` : `${words} / ${unit}`;
 }
 
 /** Step of ticks (degrees) over a span of angle. */

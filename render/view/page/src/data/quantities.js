@@ -46,17 +46,20 @@ const acted = ({ bodies = [] }) => bodies.findLast((body) => body !== "ground");
 
 const OF = {
   joint: (one) => [
-    chart("Reaction", "N", ["x", one.fx], ["y", one.fy], ["size", size(one.fx, one.fy)]),
+    chart("Reaction", "N", ...xyz(one, "f"), ["size", size(one, "f")]),
     ...some([one.torque], one.fx, one.fy) ? [chart("Reaction torque", "N m", ["torque", one.torque])] : [],
-    chart("Place", "m", ["x", one.x], ["y", one.y]),
+    ...some([one.mx, one.my, one.mz], one.fx, one.fy, one.fz) ? [chart("Moment", "N m", ...xyz(one, "m"))] : [],
+    chart("Turn", "rad", ["turn", one.turn]),
+    chart("Slide", "m", ["slide", one.slide]),
+    chart("Place", "m", ...xyz(one, "")),
   ],
   body: (one) => [
     chart("Angle", "rad", ["angle", one.theta]),
-    chart("Angular velocity", "rad/s", ["ω", one.omega]),
-    chart("Angular acceleration", "rad/s²", ["α", one.alpha]),
-    chart("Place of its frame", "m", ["x", one.x], ["y", one.y]),
-    chart("Velocity of its frame", "m/s", ["x", one.vx], ["y", one.vy], ["speed", size(one.vx, one.vy)]),
-    chart("Acceleration of its frame", "m/s²", ["x", one.ax], ["y", one.ay]),
+    chart("Angular velocity", "rad/s", ["ω", one.omega], ...xyz(one, "w"), ["size", size(one, "w")]),
+    chart("Angular acceleration", "rad/s²", ["α", one.alpha], ...xyz(one, "alpha")),
+    chart("Place of its frame", "m", ...xyz(one, "")),
+    chart("Velocity of its frame", "m/s", ...xyz(one, "v"), ["speed", size(one, "v")]),
+    chart("Acceleration of its frame", "m/s²", ...xyz(one, "a")),
   ],
   driver: (one) => [
     chart(one.unit === "rad" ? "Torque" : "Force", one.effort_unit, ["effort", one.effort]),
@@ -64,12 +67,14 @@ const OF = {
     chart(one.unit === "rad" ? "Angle" : "Length", one.unit, ["value", one.value]),
   ],
   point: (one) => [
-    chart("Speed", "m/s", ["speed", size(one.vx, one.vy)], ["x", one.vx], ["y", one.vy]),
-    chart("Place", "m", ["x", one.x], ["y", one.y]),
-    chart("Acceleration", "m/s²", ["size", size(one.ax, one.ay)], ["x", one.ax], ["y", one.ay]),
+    chart("Speed", "m/s", ["speed", size(one, "v")], ...xyz(one, "v")),
+    chart("Place", "m", ...xyz(one, "")),
+    chart("Acceleration", "m/s²", ["size", size(one, "a")], ...xyz(one, "a")),
   ],
   force: (one) => [
     chart(one.unit === "rad" ? "Torque" : "Force", one.effort_unit, ["effort", one.effort]),
+    chart("Force", "N", ...xyz(one, "f")),
+    chart("Moment", "N m", ...xyz(one, "m")),
     chart(one.unit === "rad" ? "Angle" : "Length", one.unit, ["value", one.value]),
     chart("Power", "W", ["power", one.power]),
     ...some([one.potential]) ? [chart("Potential energy", "J", ["energy", one.potential])] : [],
@@ -87,9 +92,9 @@ function overview(payload) {
     const lines = Object.entries(drivers).filter(([, one]) => one.effort_unit === unit && some([one.effort]));
     if (lines.length) charts.push(chart(unit === "N m" ? "Driving torque" : "Driving force", unit, ...lines.map(([name, one]) => [name, one.effort, acted(one)])));
   }
-  const speeds = Object.entries(points).map(([name, one]) => [name, size(one.vx, one.vy), one.body]);
+  const speeds = Object.entries(points).map(([name, one]) => [name, size(one, "v"), one.body]);
   charts.push(...several("Speed of traced points", "m/s", speeds));
-  const spins = Object.entries(bodies).filter(([, one]) => some([one.omega])).map(([name, one]) => [name, one.omega, name]);
+  const spins = Object.entries(bodies).map(([name, one]) => [name, one.omega ?? size(one, "w"), name]).filter(([, values]) => some([values]));
   charts.push(...several("Angular velocities", "rad/s", spins));
   if (couple && some([couple.mx, couple.my])) charts.push(chart("Couple on the frame", "N m", ["about x", couple.mx], ["about y", couple.my]));
   if (frame && some([frame.fx, frame.fy])) charts.push(chart("Force of inertia on the frame", "N", ["x", frame.fx], ["y", frame.fy]));
@@ -105,10 +110,12 @@ function several(title, unit, lines) {
   return Array.from({ length: count }, (_, k) => chart(count > 1 ? `${title} ${k + 1}/${count}` : title, unit, ...lines.slice(k * each, (k + 1) * each)));
 }
 
-function size(u, v) {
-  const out = new Float32Array(u.length);
-  for (let k = 0; k < out.length; k++) out[k] = Math.hypot(u[k], v[k]);
-  return out;
+/** Components of a vector, by the name that they begin with. */
+const xyz = (one, name) => ["x", "y", "z"].map((axis) => [axis, one[name + axis]]);
+
+function size(one, name) {
+  const parts = xyz(one, name).map(([, values]) => values).filter(Boolean);
+  return parts[0]?.map((_, k) => Math.hypot(...parts.map((values) => values[k])));
 }
 
 /** Whether a curve says more than one number. */

@@ -17,11 +17,16 @@ export class Designs {
     this.values = {};
   }
 
-  /** @param {import("../app.js").App} app */
-  mounted(app) {
+  /** Take the page whose numbers are moved. @param {import("../app.js").App} app */
+  attach(app) {
     this.app = app;
     this.own = app.payload;
     this.design = anchors(app.payload);
+  }
+
+  /** @param {import("../app.js").App} app */
+  mounted(app) {
+    this.attach(app);
     this.sliders = new Sliders((values) => this.move(values), (held) => app.hold(held));
     const exact = el("p", { class: "exact" }, `Between stored motions: places within ${written(this.table.places, "m")} of a solution, efforts within ${Math.max(0.01, 100 * this.table.efforts).toPrecision(2)} % of the largest.`);
     app.slot.replaceChildren(el("section", { class: "live", "aria-label": "Numbers of the machine" },
@@ -37,7 +42,7 @@ export class Designs {
       if (now === value) delete this.values[name];
       else this.values[name] = now;
     }
-    this.sliders.show(this.values);
+    this.sliders?.show(this.values);
     const { app } = this;
     if (!Object.keys(this.values).length) return void app.update({ ...this.own, other: null });
     const patch = this.between();

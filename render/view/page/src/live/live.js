@@ -132,18 +132,27 @@ export class Live {
     if (this.error === undefined) this.says(this.idle);
   }
 
-  /** Parts; none where the file's numbers have others by now: then those that are there serve until they are made. */
+  /** The motion of the file with its parts; none where its numbers have others by now: those that are there serve meanwhile. */
   async solid(payload) {
     const { app } = this;
     this.outdated = !payload.length;
     if (payload.length) {
-      const patch = await this.decode(payload);
-      if (same(payload, this.bytes) && app.payload.solid) patch.solid = app.payload.solid;
+      const own = await this.decode(payload);
+      if (same(payload, this.bytes) && app.payload.solid) own.solid = app.payload.solid;
       this.bytes = payload.slice();
-      app.update({ ...patch, other: null });
-      this.design = anchors(app.payload);
+      this.design = anchors(own);
+      if (Object.keys(this.values).length) this.dimmed(own);
+      else app.update({ ...own, other: null });
     } else if (app.payload.solid && this.design) app.update({ other: stretches(this.design, anchors(app.payload)) });
     if (this.error === undefined) this.says(this.idle);
+  }
+
+  /** Parts of the file's numbers beside a motion with others. */
+  dimmed(own) {
+    const { app } = this, { arrows, arcs, trails } = app.payload, patch = { arrows, arcs, trails };
+    raised(patch, own);
+    app.update({ ...patch, solid: own.solid, clearance: null, other: stretches(this.design, anchors(app.payload)) });
+    if (!this.serves) this.without();
   }
 
   /** Whether the parts have the bodies of the motion. */

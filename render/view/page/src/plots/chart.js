@@ -16,9 +16,11 @@ export class Chart {
   /**
    * @param {HTMLElement} parent  @param {import("../app.js").App} app  @param {import("../data/quantities.js").Chart} chart
    * @param {{ink: string, quiet: string, grid: string, driver: string, line: (line: object, k: number) => string}} colours
+   * @param {number} height in pixels
    */
-  constructor(parent, app, chart, colours) {
+  constructor(parent, app, chart, colours, height = HEIGHT) {
     this.app = app;
+    this.height = height;
     this.unit = el("small");
     this.clipping = el("small", { class: "cut" });
     this.of(chart);
@@ -31,7 +33,7 @@ export class Chart {
     this.box = el("figure", { class: "chart" }, el("figcaption", {}, head, legend));
     parent.append(this.box);
     this.plot = charted(() => new uPlot({
-      width: Math.max(parent.clientWidth - 28, 200), height: HEIGHT, legend: { show: false }, cursor: { show: false },
+      width: Math.max(parent.clientWidth - 28, 200), height, legend: { show: false }, cursor: { show: false },
       padding: [6, 12, 0, 0],
       scales: { x: { time: false, range: () => [app.clock.start, app.clock.end] }, y: { range: (u, low, high) => this.cut ? [this.cut.low, this.cut.high] : room(u, low, high) } },
       axes: [
@@ -77,7 +79,7 @@ export class Chart {
     over.addEventListener("pointermove", (event) => over.hasPointerCapture(event.pointerId) && go(event));
   }
 
-  resize(width) { this.plot.setSize({ width, height: HEIGHT }); this.cursor(); }
+  resize(width) { this.plot.setSize({ width, height: this.height }); this.cursor(); }
 
   cursor() {
     const { motion } = this.app;

@@ -14,8 +14,9 @@ export function inside(app) {
   const apart = range("apart", "Exploded"), cut = range("cut", "Section");
   const side = el("select", { class: "side-of", "aria-label": "Side of the section" }, ...Object.entries(SIDES).filter(([value]) => value !== "film" || app.payload.solid?.sawn).map(([value, words]) => el("option", { value }, words)));
   side.addEventListener("change", () => store.set({ cutSide: side.value }));
+  const layers = el("label", {}, "Exploded", apart);
   const box = el("div", { class: "inside", role: "group", "aria-label": "Inside" },
-    el("label", {}, "Exploded", apart), el("label", {}, "Section", cut), side);
+    layers, el("label", {}, "Section", cut), side);
   const show = () => {
     const { apart: now, cut: away } = store.state;
     for (const [input, value] of [[apart, now], [cut, away]]) {
@@ -26,6 +27,7 @@ export function inside(app) {
     side.value = store.state.cutSide;
     side.hidden = !away;
     box.hidden = !app.payload.solid;
+    layers.hidden = !!app.payload.space;
   };
   store.on(["apart", "cut", "cutSide"], show, true);
   box.update = show;

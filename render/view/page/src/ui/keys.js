@@ -3,8 +3,8 @@ import { showHelp } from "./help.js";
 import { SHOWN } from "./shown.js";
 import { nearest } from "./transport.js";
 
-/** @param {import("../app.js").App} app */
-export function keys(app) {
+/** @param {import("../app.js").App} app  @param {EventTarget} keyed what hears them */
+export function keys(app, keyed) {
   const { store } = app;
   const speed = (way) => {
     const speeds = app.clock.speeds(), at = speeds.indexOf(nearest(speeds, store.state.speed));
@@ -33,8 +33,8 @@ export function keys(app) {
     "?": () => showHelp(),
     Escape: () => store.set({ selected: null }),
   };
-  for (const { word, key } of SHOWN) act[key] = () => app.parts.chips.querySelector(`[data-word=${word}]`) && store.show(word);
-  document.addEventListener("keydown", (event) => {
+  for (const { word, key, there } of SHOWN) act[key] = () => there(app.payload) && store.show(word);
+  keyed.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
     const { target } = event, tag = target?.tagName;
     const typed = tag === "SELECT" || tag === "TEXTAREA" || (tag === "INPUT" && target.type !== "range" && target.type !== "checkbox");

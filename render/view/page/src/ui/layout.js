@@ -5,6 +5,21 @@ import { icon } from "./icons.js";
 import { inside } from "./inside.js";
 import { SHOWN } from "./shown.js";
 
+/** The canvases, and what is written over them. */
+export function scene() {
+  const legend = el("div", { class: "legend", "aria-live": "off" });
+  const line = el("div", { class: "notice", role: "status", hidden: true });
+  const canvases = { solid: el("canvas", { class: "view", tabindex: "0", "aria-label": "The parts; drag to turn, wheel to zoom, right button to move" }), plane: el("canvas", { class: "view", tabindex: "0", "aria-label": "The skeleton; click a joint or body for its curves" }) };
+  const labels = el("div", { class: "labels", "aria-hidden": "true" });
+  const notice = (text, kind) => {
+    if (!text && kind === "coming" && line.dataset.kind !== kind) return; // another word is being said
+    line.hidden = !text;
+    line.textContent = text ?? "";
+    line.dataset.kind = kind;
+  };
+  return { stage: el("div", { class: "scene" }, canvases.plane, canvases.solid, labels, legend, line), canvases, legend, labels, notice };
+}
+
 /** @param {HTMLElement} root  @param {import("../app.js").App} app */
 export function layout(root, app) {
   const { store } = app;
@@ -20,28 +35,18 @@ export function layout(root, app) {
   const header = el("header", { class: "top" }, el("div", { class: "name" }, title, about),
     el("div", { class: "tools" }, segmented, homeButton, themeButton, helpButton));
   const chips = el("div", { class: "chips", role: "group", "aria-label": "What is shown" });
-  const legend = el("div", { class: "legend", "aria-live": "off" });
-  const noticeLine = el("div", { class: "notice", role: "status", hidden: true });
-  const views2 = { solid: el("canvas", { class: "view", tabindex: "0", "aria-label": "The parts; drag to turn, wheel to zoom, right button to move" }), plane: el("canvas", { class: "view", tabindex: "0", "aria-label": "The skeleton; click a joint or body for its curves" }) };
-  const labels = el("div", { class: "labels", "aria-hidden": "true" });
-  const stage = el("div", { class: "scene" }, views2.plane, views2.solid, labels, legend, noticeLine);
+  const seen = scene();
   const slot = el("div", { class: "slot" });
   const side = el("aside", { class: "side", "aria-label": "Curves" }, slot);
   const bar = el("footer", { class: "bar" });
   root.classList.add("mbsd");
   const within = inside(app);
-  root.replaceChildren(header, el("main", { class: "stage" }, el("div", { class: "shows" }, chips, within), stage), side, bar);
+  root.replaceChildren(header, el("main", { class: "stage" }, el("div", { class: "shows" }, chips, within), seen.stage), side, bar);
 
   const words = {};
   let offered = null;
   const parts = {
-    root, header, stage, side, bar, slot, chips, legend, labels, themeButton, canvases: views2,
-    notice(text, kind) {
-      if (!text && kind === "coming" && noticeLine.dataset.kind !== kind) return; // another word is being said
-      noticeLine.hidden = !text;
-      noticeLine.textContent = text ?? "";
-      noticeLine.dataset.kind = kind;
-    },
+    ...seen, root, header, side, bar, slot, chips, themeButton,
     update() {
       const { payload } = app;
       title.textContent = payload.title;

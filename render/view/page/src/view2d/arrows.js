@@ -6,51 +6,49 @@ import { HEADS } from "./inks.js";
  * @param {import("../data/decode.js").Payload} payload
  * @param {import("../data/motion.js").Motion} motion
  * @param {Record<string, boolean>} shown
- * @returns {{index: number, row: string, tail: [number, number], tip: [number, number], z: number}[]} (m)
+ * @returns {{index: number, row: string, tail: number[], tip: number[], z: number}[]} (m) in the plane, or in space
  */
-export function arrowsAt({ arrows }, motion, shown) {
-  const out = [];
+export function arrowsAt({ arrows, space }, motion, shown) {
+  const out = [], sides = space ? [0, 1, 2] : [0, 1], now = (series) => sides.map((k) => motion.linear(series, sides.length, k));
   arrows.list.forEach((one, index) => {
     const scale = arrows.scales[one.unit];
     if (!shown[one.quantity] || !scale) return;
-    const u = motion.linear(one.value, 2), v = motion.linear(one.value, 2, 1), size = Math.hypot(u, v);
+    const value = now(one.value), size = Math.hypot(...value);
     const length = arrows.full * Math.min(size / scale.largest, arrows.longest);
     if (!size || length < arrows.tiny * arrows.full) return;
-    const x = motion.linear(one.place, 2), y = motion.linear(one.place, 2, 1);
-    const tip = [x + u / size * length, y + v / size * length];
-    out.push({ index, row: one.row, tail: [x, y], tip, z: one.z });
+    const tail = now(one.place), tip = tail.map((x, k) => x + value[k] / size * length);
+    out.push({ index, row: one.row, tail, tip, z: one.z });
   });
   return out;
 }
 
-/** @returns {{index: number, row: string, centre: [number, number], sweep: number, radius: number, z: number}[]} */
-export function arcsAt({ arcs, arrows }, motion, shown) {
-  const out = [];
+/** @returns {{index: number, row: string, centre: number[], sweep: number, radius: number, z: number, about?: number[]}[]} */
+export function arcsAt({ arcs, arrows, space }, motion, shown) {
+  const out = [], sides = space ? [0, 1, 2] : [0, 1], now = (series) => sides.map((k) => motion.linear(series, sides.length, k));
   arcs.list.forEach((one, index) => {
     if (!shown[one.quantity] || !arcs.scale) return;
     const value = motion.linear(one.value) / arcs.scale.largest;
     const sweep = arcs.full * Math.max(-arrows.longest, Math.min(arrows.longest, value));
     if (Math.abs(sweep) < arrows.tiny * arcs.full) return;
-    const centre = [motion.linear(one.place, 2), motion.linear(one.place, 2, 1)];
-    out.push({ index, row: one.row, centre, sweep, radius: one.radius, z: one.z });
+    out.push({ index, row: one.row, centre: now(one.place), sweep, radius: one.radius, z: one.z, about: space && now(one.about) });
   });
   return out;
 }
 
 /** @param {CanvasRenderingContext2D} g  @param {import("./paper.js").Paper} paper  @param {string} halo round every arrow */
-export function drawArrows(g, paper, arrows, arcs, colours, halo) {
+export function drawArrows(g, paper, payload, motion, shown, colours, halo) {
   const shapes = [];
-  for (const { row, tail, tip } of arrows) {
-    const a = paper.pixel(...tail), b = paper.pixel(...tip), length = Math.hypot(b[0] - a[0], b[1] - a[1]);
+  for (const { row, tail, tip } of arrowsAt(payload, motion, shown)) {
+    const a = paper.pixel(...motion.flat(tail)), b = paper.pixel(...motion.flat(tip)), length = Math.hypot(b[0] - a[0], b[1] - a[1]);
     if (length < 2) continue;
     const u = (b[0] - a[0]) / length, v = (b[1] - a[1]) / length;
     for (const corners of arrowOutlines(length, HEADS[row])) {
       shapes.push([colours[row], corners.map(([x, y]) => [a[0] + u * x - v * y, a[1] + v * x + u * y])]);
     }
   }
-  for (const { row, centre, sweep, radius } of arcs) {
-    const [x, y] = paper.pixel(...centre), r = Math.max(radius * paper.scale, 14);
-    for (const corners of arcOutlines(r, sweep)) shapes.push([colours[row], corners.map(([u, v]) => [x + u, y - v])]);
+  for (const { row, centre, sweep, radius, about } of arcsAt(payload, motion, shown)) {
+    const [x, y] = paper.pixel(...motion.flat(centre)), r = Math.max(radius * paper.scale, 14);
+    for (const corners of arcOutlines(r, sweep * motion.facing(about))) shapes.push([colours[row], corners.map(([u, v]) => [x + u, y - v])]);
   }
   g.setLineDash([]);
   g.lineJoin = "round";

@@ -1,8 +1,8 @@
 /** The 2D view: the skeleton with the standard symbols, and over it what is shown: trails, arrows, names. */
-import { Motion } from "../data/motion.js";
+import { motionOf } from "../data/space.js";
 import { same } from "../state.js";
 import { pen } from "../ui/canvases.js";
-import { arcsAt, arrowsAt, drawArrows } from "./arrows.js";
+import { drawArrows } from "./arrows.js";
 import { moved } from "carriers";
 import { drawGrid } from "./grid.js";
 import { inks, showsArrows } from "./inks.js";
@@ -45,7 +45,7 @@ export class Skeleton {
   }
 
   /** Take what the app's payload is now. */
-  update() { this.first = new Motion(this.app.payload); }
+  update() { this.first = motionOf(this.app.payload); }
 
   /** A joint or point may be dragged where the app is live. */
   grab(x, y) {
@@ -88,7 +88,7 @@ export class Skeleton {
     for (const one of skeleton.strokes) if (!one.sign || shown.centres) this.stroke(g, one, colours, 1);
     this.mark(g, this.hovered, colours, 0.5);
     this.mark(g, selected, colours, 1);
-    drawArrows(g, this.paper, arrowsAt(payload, motion, shown), arcsAt(payload, motion, shown), colours.arrows, colours.paper);
+    drawArrows(g, this.paper, payload, motion, shown, colours.arrows, colours.paper);
     if (shown.names) this.names(g, colours);
   }
 
@@ -101,7 +101,7 @@ export class Skeleton {
     g.clearRect(0, 0, ...this.size);
     if (shown.trails) drawTrails(g, paper, payload, motion, colours.trail);
     for (const one of payload.skeleton.strokes) if (!one.sign || shown.centres) this.stroke(g, one, colours, 1);
-    drawArrows(g, paper, arrowsAt(payload, motion, shown), arcsAt(payload, motion, shown), colours.arrows);
+    drawArrows(g, paper, payload, motion, shown, colours.arrows);
     this.paper = own;
   }
 

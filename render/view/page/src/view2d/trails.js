@@ -9,14 +9,14 @@ const PIECES = 90;
 export function drawTrails(g, paper, payload, motion, colour) {
   g.lineJoin = g.lineCap = "round";
   for (const { point, tail } of payload.trails) {
-    const { x, y } = payload.points[point];
+    const { x, y, z } = payload.points[point];
     g.beginPath();
-    for (let k = 0; k < x.length; k++) g.lineTo(...paper.pixel(x[k], y[k]));
+    for (let k = 0; k < x.length; k++) g.lineTo(...paper.pixel(...motion.flat([x[k], y[k], z?.[k]])));
     g.strokeStyle = colour;
     g.globalAlpha = 0.28;
     g.lineWidth = 1.4;
     g.stroke();
-    const places = tailOf(payload, motion, point, tail, PIECES).map((place) => paper.pixel(...place));
+    const places = tailOf(payload, motion, tail, PIECES, () => motion.point(point)).map((place) => paper.pixel(...place));
     g.lineWidth = 2.6;
     for (let k = 1; k < places.length; k++) {
       g.globalAlpha = 0.95 * (1 - k / places.length) ** 1.3;
@@ -29,8 +29,8 @@ export function drawTrails(g, paper, payload, motion, colour) {
   }
 }
 
-/** Places (m) from now back to the end of the tail; of a motion that does not repeat it grows from the start. */
-export function tailOf(payload, motion, point, tail, count) {
+/** Places (m) from now back to the end of the tail; of a motion that does not repeat it grows from the start. @param {() => number[]} at */
+export function tailOf(payload, motion, tail, count, at) {
   const now = motion.t, { start, end, turns } = payload.clock, span = end - start;
   const repeats = payload.period !== null;
   const length = repeats ? (tail * span) / turns : Math.min(tail * span, now - start);
@@ -38,7 +38,7 @@ export function tailOf(payload, motion, point, tail, count) {
   for (let k = 0; k < count; k++) {
     const back = now - (length * k) / (count - 1) - start;
     motion.to(start + (repeats ? ((back % span) + span) % span : Math.max(back, 0)));
-    out.push(motion.point(point));
+    out.push(at());
   }
   motion.to(now);
   return out;

@@ -3,6 +3,7 @@ import { CylinderGeometry, Curve, ExtrudeGeometry, Group, LatheGeometry, Mesh, M
 import { arcsAt, arrowsAt } from "../view2d/arrows.js";
 import { HEADS } from "../view2d/inks.js";
 
+const ALONG = new Vector3(1, 0, 0), UP = new Vector3(0, 0, 1);
 const SHAFT = 0.0042, HEAD = 0.0125, POINT = 0.037;
 /** Parts of the size, render/film/arrows.py. */
 const SEGMENTS = 64;
@@ -48,12 +49,12 @@ export class Arrows {
     const size = payload.solid.size;
     for (const one of [...this.straight.values(), ...this.curved.values()]) one.visible = false;
     for (const { index, row, tail, tip, z } of arrowsAt(payload, motion, shown)) {
-      const one = this.arrow(index, row, this.material(row, colours)), dx = tip[0] - tail[0], dy = tip[1] - tail[1];
-      const length = Math.hypot(dx, dy), point = Math.min(POINT * size, (HEADS[row].endsWith("double") ? 0.5 : 0.7) * length);
+      const one = this.arrow(index, row, this.material(row, colours)), way = new Vector3(...tip.map((x, k) => x - tail[k]));
+      const length = way.length(), point = Math.min(POINT * size, (HEADS[row].endsWith("double") ? 0.5 : 0.7) * length);
       const thin = Math.min(1, length / (1.4 * POINT * size)), thick = SHAFT * size * thin, halo = HALO * thick;
       one.visible = true;
-      one.position.set(tail[0], tail[1], raised(z));
-      one.rotation.z = Math.atan2(dy, dx);
+      one.position.set(tail[0], tail[1], tail[2] ?? raised(z));
+      one.quaternion.setFromUnitVectors(ALONG, way.divideScalar(length));
       one.children.forEach((mesh, k) => {
         const more = k % 2 ? 0 : halo, head = HEAD * size * thin;
         if (k < 2) mesh.scale.set(length - 0.8 * point, thick + more, thick + more);
@@ -63,10 +64,11 @@ export class Arrows {
         }
       });
     }
-    for (const { index, row, centre, sweep, radius, z } of arcsAt(payload, motion, shown)) {
+    for (const { index, row, centre, sweep, radius, z, about } of arcsAt(payload, motion, shown)) {
       const one = this.arc(index, radius, size, payload, this.material(row, colours)), part = Math.abs(sweep) / one.userData.full;
       one.visible = true;
-      one.position.set(...centre, raised(z));
+      one.position.set(centre[0], centre[1], centre[2] ?? raised(z));
+      if (about) one.quaternion.setFromUnitVectors(UP, new Vector3(...about).normalize());
       one.scale.y = Math.sign(sweep);
       const angle = Math.abs(sweep);
       const thin = Math.min(1, (0.55 * radius * angle) / (STOUT * POINT * size)), neck = Math.max(part - (0.8 * thin * STOUT * POINT * size) / (radius * one.userData.full), 0);

@@ -81,12 +81,17 @@ export class Parts {
 
   /** @param {import("../data/motion.js").Motion} motion */
   move(motion) {
-    const { bodies, other } = motion.payload, count = motion.time.length;
+    const { bodies, other, space } = motion.payload, count = motion.time.length;
     for (const [name, group] of this.bodies) {
-      const { x, y, theta } = motion.body(name), map = other?.[name];
+      const map = other?.[name];
       group.visible = !other || name in bodies || name === "ground";
       group.matrixAutoUpdate = !map;
-      if (name in bodies) {
+      if (name in bodies && space) {
+        const { place, turned: [w, x, y, z] } = motion.pose(name);
+        group.position.set(...place);
+        group.quaternion.set(x, y, z, w);
+      } else if (name in bodies) {
+        const { x, y, theta } = motion.body(name);
         group.position.set(x, y, 0);
         group.rotation.z = theta;
       }

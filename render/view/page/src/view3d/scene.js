@@ -198,14 +198,14 @@ export class Solid {
 
   /** @returns {import("../state.js").Thing | null} a joint or point near a pixel, else the body there */
   thingAt(px, py) {
-    const { payload, motion } = this.app, { heights } = payload.solid;
+    const { payload, motion } = this.app;
     let best = null, nearest = NEAR;
-    const look = (kind, name, place, z) => {
-      const [x, y] = this.pixel(new Vector3(...place, this.parts.raised(z))), away = Math.hypot(x - px, y - py);
+    const look = (kind, name) => {
+      const [u, v, z] = motion.spot(kind, name), [x, y] = this.pixel(new Vector3(u, v, this.parts.raised(z))), away = Math.hypot(x - px, y - py);
       if (away < nearest) [best, nearest] = [{ kind, name }, away];
     };
-    for (const name in payload.joints) look("joint", name, motion.joint(name), heights.joints[name] ?? 0);
-    for (const name in payload.points) look("point", name, motion.point(name), heights.points[name] ?? 0);
+    for (const name in payload.joints) look("joint", name);
+    for (const name in payload.points) look("point", name);
     if (best) return best;
     const ray = new Raycaster();
     ray.setFromCamera(new Vector2((2 * px) / this.size[0] - 1, 1 - (2 * py) / this.size[1]), this.camera);

@@ -1,5 +1,6 @@
 /** The path of a traced point as a thin light that fades behind it. */
 import { BufferAttribute, BufferGeometry, Color, DoubleSide, Group, Mesh, MeshBasicMaterial } from "three";
+import { cross } from "../data/space.js";
 import { tailOf } from "../view2d/trails.js";
 
 const RINGS = 220, SIDES = 8;
@@ -29,21 +30,26 @@ export class Trails {
   draw(payload, motion, ink, raised = (z) => z) {
     if (ink !== this.ink) this.update(payload, ink);
     for (const { trail, mesh } of this.made) {
-      const places = tailOf(payload, motion, trail.point, trail.tail, RINGS), { array } = mesh.geometry.attributes.position, z = raised(trail.z);
+      const at = () => (payload.space ? motion.spot("point", trail.point) : [...motion.point(trail.point), raised(trail.z)]);
+      const places = tailOf(payload, motion, trail.tail, RINGS, at), { array } = mesh.geometry.attributes.position;
       for (let k = 0; k < RINGS; k++) {
         const a = places[Math.max(k - 1, 0)], b = places[Math.min(k + 1, RINGS - 1)];
-        const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1, u = -(b[1] - a[1]) / length, v = (b[0] - a[0]) / length;
+        const way = unit(a.map((x, n) => b[n] - x)), side = unit(cross([0, 0, 1], way)), up = cross(way, side);
         const r = trail.radius * (1 - (k / (RINGS - 1)) ** 1.5 * 0.85);
         for (let n = 0; n < SIDES; n++) {
-          const angle = (2 * Math.PI * n) / SIDES, c = r * Math.cos(angle), at = 3 * (k * SIDES + n);
-          array[at] = places[k][0] + u * c;
-          array[at + 1] = places[k][1] + v * c;
-          array[at + 2] = z + r * Math.sin(angle);
+          const angle = (2 * Math.PI * n) / SIDES, c = r * Math.cos(angle), s = r * Math.sin(angle);
+          for (let m = 0; m < 3; m++) array[3 * (k * SIDES + n) + m] = places[k][m] + c * side[m] + s * up[m];
         }
       }
       mesh.geometry.attributes.position.needsUpdate = true;
     }
   }
+}
+
+/** At length 1; the x axis for what has none. */
+function unit(way) {
+  const length = Math.hypot(...way);
+  return length > 1e-12 ? way.map((x) => x / length) : [1, 0, 0];
 }
 
 function tube(colour, ink) {

@@ -3,15 +3,15 @@ import { figures, written } from "../data/numbers.js";
 
 /** @param {import("../app.js").App} app */
 export function wantedLabels(app) {
-  const { payload, motion, store } = app, { shown, selected } = store.state, { heights } = payload.solid, out = [];
-  const add = (kind, name, place, z, text = name) => out.push({ key: `${kind} ${name}`, text: text.replaceAll("_", " "), at: [...place, z], kind });
+  const { payload, motion, store } = app, { shown, selected } = store.state, out = [];
+  const add = (kind, name, at = motion.spot(kind, name)) => out.push({ key: `${kind} ${name}`, text: name.replaceAll("_", " "), at, kind });
   if (shown.names) {
-    for (const name in payload.joints) add("joint", name, motion.joint(name), heights.joints[name] ?? 0);
-    for (const name in payload.points) add("point", name, motion.point(name), heights.points[name] ?? 0);
-    for (const name in payload.bodies) if (payload.bodies[name].mass > 0) add("body", name, motion.centre(name), heights.bodies[name] ?? 0);
+    for (const name in payload.joints) add("joint", name);
+    for (const name in payload.points) add("point", name);
+    for (const name in payload.bodies) if (payload.bodies[name].mass > 0) add("body", name);
   } else if (selected) {
-    const place = app.placeOf(selected);
-    if (place) add(selected.kind, selected.name, place, heightOf(app, selected));
+    const at = app.spotOf(selected);
+    if (at) add(selected.kind, selected.name, at);
   }
   if (shown.clearance) {
     for (const { at, gap, time, bodies, layers } of gaps(payload, motion)) {
@@ -27,14 +27,14 @@ export function wantedLabels(app) {
 
 /** @param {import("../app.js").App} app */
 export function wantedMarks(app) {
-  const { payload, motion, store } = app, { shown, selected } = store.state, { heights } = payload.solid, out = [];
+  const { payload, motion, store } = app, { shown, selected } = store.state, out = [];
   if (shown.centres) {
-    for (const name in payload.bodies) if (payload.bodies[name].mass > 0) out.push({ kind: "centre", at: [...motion.centre(name), heights.bodies[name] ?? 0] });
+    for (const name in payload.bodies) if (payload.bodies[name].mass > 0) out.push({ kind: "centre", at: motion.spot("body", name) });
   }
-  if (shown.names) for (const name in payload.joints) out.push({ kind: "joint", at: [...motion.joint(name), heights.joints[name] ?? 0] });
+  if (shown.names) for (const name in payload.joints) out.push({ kind: "joint", at: motion.spot("joint", name) });
   if (shown.clearance) for (const { at } of gaps(payload, motion)) out.push({ kind: "gap", at });
-  const place = selected && app.placeOf(selected);
-  if (place) out.push({ kind: "selected", at: [...place, heightOf(app, selected)] });
+  const at = selected && app.spotOf(selected);
+  if (at) out.push({ kind: "selected", at });
   return out;
 }
 
@@ -51,15 +51,8 @@ function gaps(payload, motion) {
       if (!seen.has(key) && !layers.has(key)) layers.set(key, pair.gap);
     } else if (!seen.has(key)) {
       const [x, y, z] = pair.at;
-      seen.set(key, { ...pair, at: pair.on ? [...motion.place({ body: pair.on, x, y }), z] : pair.at, layers: layers.get(key) ?? Infinity });
+      seen.set(key, { ...pair, at: pair.on ? motion.where({ body: pair.on, x, y, z }) : pair.at, layers: layers.get(key) ?? Infinity });
     }
   }
   return [...seen.values()].slice(0, MOST);
-}
-
-
-function heightOf({ payload }, { kind, name }) {
-  const { joints, points, bodies } = payload.solid.heights;
-  const known = { joint: joints, point: points, body: bodies }[kind]?.[name];
-  return known ?? Math.max(0, ...Object.values(bodies));
 }

@@ -1,5 +1,5 @@
 """A cycloidal drive: a crank carries a lobed disc round in a ring of pins, one more than it has lobes.
-Each turn of the crank turns the disc back by one lobe. The disc is an outline that the pins push: nothing else turns it.
+Each turn of the crank turns the disc back by one lobe. The pins push the disc's outline; nothing else turns it.
 """
 
 from dataclasses import dataclass
@@ -8,11 +8,12 @@ from math import atan2, cos, pi, sin
 from mbsd import Mechanism, circle, constant_rate, spline_through
 
 DURATION = 2.0
+STIFFNESS = 2e5
 
 
 @dataclass(frozen=True)
 class Params:
-    """Lobes, radius of the ring of pins, of a pin, and of the crank (m), turns of the crank per second."""
+    """Lobes, radius of the ring of pins, of a pin, and of the crank (m), turns per second, brake (N m s/rad)."""
 
     lobes: int = 9
     ring: float = 0.070
@@ -45,7 +46,7 @@ def build(p: Params) -> Mechanism:
     for k in range(p.lobes + 1):
         a = 2 * pi * k / (p.lobes + 1)
         m.outline(m.ground, circle(p.pin, (p.ring * cos(a), p.ring * sin(a))), name=f"pin {k + 1}")
-    m.yielding_outline_contact("mesh", disc, m.ground, stiffness=2e5, exponent=1.0, damping=1.0)
+    m.yielding_outline_contact("mesh", disc, m.ground, STIFFNESS, exponent=1.0, damping=1.0)
     m.torsion_spring("load", m.ground, disc, 0.0, damping=p.load)
     m.trace("lobe", disc.at(p.ring - p.pin - p.crank - 0.003, 0))
     m.start_near(crank=0, disc=0)

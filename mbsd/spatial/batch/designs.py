@@ -55,7 +55,7 @@ class Designs:
         """Return a mechanism of its own to be changed."""
         return copy.deepcopy(self.m)
 
-    def put(self, own: Any, numbers: np.ndarray) -> Any:
+    def set_numbers(self, own: Any, numbers: np.ndarray) -> Any:
         """Return ``own``, a copy of the mechanism, with the numbers (k,) of a row. Raises ModelError."""
         changes: dict[str, dict[str, Any]] = {}
         begin = 0
@@ -92,5 +92,5 @@ def designs_of(m: Any, vary: Any, start: Any, moving: Any) -> Designs:
     count = next(iter(counts.values()), 1)
     columns = [c._replace(values=np.broadcast_to(c.values, (count, *c.values.shape[1:]))) for c in columns]
     designs = Designs(m, count, columns)
-    designs.put(designs.copied(), designs.numbers[0])
+    designs.set_numbers(designs.copied(), designs.numbers[0])
     return designs

@@ -64,8 +64,8 @@ def quantity_named(m: Any, name: str) -> Quantity:
     if whole in m.forces and part in OTHERS:
         return Quantity(name, lambda sol: getattr(sol.force(whole), part))
     parts = {**dict.fromkeys((*m.traces, *m.bodies), FRAME), **dict.fromkeys((*m.drivers, *m.forces), OTHERS)}
-    known = [f"{one}.{key}" for one, keys in parts.items() for key in keys]
-    known += [f"{one}.{key}" for one in m.joints for key in (*MEASURED, *WRENCH)]
+    known = [f"{thing}.{key}" for thing, keys in parts.items() for key in keys]
+    known += [f"{joint}.{key}" for joint in m.joints for key in (*MEASURED, *WRENCH)]
     raise ModelError(f"{m.name}: measure: {no_such('quantity', name, ['t', *known, *ENERGY])}")
 
 

@@ -94,7 +94,7 @@ def _patches(work: Work) -> Patches:
         raise NotPatched(f"'{single[0]}' is that of a single solution")
     own = work.designs.copied()
     try:
-        return Patches(work.designs, lambda numbers: work.run(work.designs.put(own, numbers)))
+        return Patches(work.designs, lambda numbers: work.run(work.designs.set_numbers(own, numbers)))
     except MechanismError as error:
         raise NotPatched(f"some cannot be prepared: {error}") from error
 
@@ -119,9 +119,9 @@ class Worker:
         reasons: list[str | None] = [None] * len(rows)
         alone = list(reasons)
         for k in np.flatnonzero(out.status != REACHED).tolist():
-            one = self._single(rows[k], WHY.get(int(out.status[k]), SMALL))
-            reasons[k], alone[k] = one.reasons[0], one.alone[0]
-            for name, values in one.columns.items():
+            single = self._single(rows[k], WHY.get(int(out.status[k]), SMALL))
+            reasons[k], alone[k] = single.reasons[0], single.alone[0]
+            for name, values in single.columns.items():
                 columns.setdefault(name, np.full((len(rows), *values.shape[1:]), np.nan))[k] = values[0]
         return Done(columns, reasons, alone)
 
@@ -142,7 +142,7 @@ class Worker:
             return failed("stopped", why)
         designs, measures = self.work.designs, self.work.measures
         try:
-            sol = self.work.run(designs.put(self.own, designs.numbers[row])).followed()
+            sol = self.work.run(designs.set_numbers(self.own, designs.numbers[row])).followed()
         except Exception as error:
             return failed(described(error), why)
         try:

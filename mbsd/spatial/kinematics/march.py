@@ -177,7 +177,7 @@ class SpaceMarch(NewtonMarch):
         """Fill velocities, accelerations and turns at ``rows`` (R,), whose coordinates are those of a passage."""
         self._complete(self.arrays, self.steps.times, self.steps.drives, rows)
 
-    def beside(self, passage: Passage, times: np.ndarray) -> newton.DrivenMotion:
+    def solve_beside(self, passage: Passage, times: np.ndarray) -> newton.DrivenMotion:
         """Return the motion at ``times`` (N,) near a change point, each pose solved by itself."""
         packed, drives, every = self.packed, self.packed.drives(times), np.arange(len(times))
         arrays = room(packed, len(times), len(self.sequence.ends), self.reactions)
@@ -200,8 +200,8 @@ class SpaceMarch(NewtonMarch):
     ) -> None:
         """Solve poses and reactions at ``rows`` (R,), each by itself from what the arrays hold there."""
         for k in rows if self.reactions else ():
-            one = {name: array[k : k + 1] for name, array in arrays.items()}
-            alone = motion_of(self.packed, times[k : k + 1], drives[k : k + 1], self.steps.stride, one)
+            row = {name: array[k : k + 1] for name, array in arrays.items()}
+            alone = motion_of(self.packed, times[k : k + 1], drives[k : k + 1], self.steps.stride, row)
             if self._swept(alone, 0, 0, 0.0)[0] != DONE:
                 alone.lam[:] = alone.wrench[:] = np.nan
 
@@ -219,8 +219,8 @@ class SpaceMarch(NewtonMarch):
         ws, q, v, turn, rate = self.packed.ws, *(arrays[name] for name in ("q", "v", "turn", "turn_rate"))
         for k in rows if turn.shape[1] else ():
             guess = turn[k - 1] + (times[k] - times[k - 1]) * rate[k - 1] if k else turn[0]
-            one = slice(k, k + 1)
-            tabulated(self.packed, drives[one], q[one], v[one], guess[None])
+            step = slice(k, k + 1)
+            tabulated(self.packed, drives[step], q[step], v[step], guess[None])
             turn[k], rate[k] = ws.turn, ws.turn_rate
 
 

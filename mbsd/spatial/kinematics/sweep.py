@@ -36,7 +36,7 @@ def sweep(
     motion = march.motion()
     sides = [(passage, side) for passage in march.passages.passages for side in sides_of(passage, motion.times)]
     beside = [
-        Beside(side, determinant_of(passage, np.append(side.nodes, side.rows)), march.beside(passage, side.nodes))
+        Beside(side, determinant_of(passage, np.append(side.nodes, side.rows)), march.solve_beside(passage, side.nodes))
         for passage, side in sides
     ]
     if march.filled:

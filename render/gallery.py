@@ -126,7 +126,7 @@ def page(entries: Sequence[Entry], own: bool = False) -> str:
     for entry in entries:
         title = entry.name.replace("_", " ")
         title = title[:1].upper() + title[1:]
-        lines += ["", f"## {title}", f"![{title}]({entry.name}.jpg)", ""]
+        lines += ["", f"## {title}", f"![{title}]({entry.name}.jpg)\\"]
         lines += [f"{entry.said}\\"] if entry.said else []
         page_of = f"`{to_run('view', entry.name)}`" if own else f"[the page](../view.md): `mbsd view {entry.name}`"
         lines += [f"{' · '.join(entry.facts)} · [{entry.file.rpartition('/')[2]}]({entry.file}) · {page_of}"]

@@ -135,7 +135,7 @@ def test_the_page_shows_who_has_a_poster(
     assert gallery.run(folder) == int(len(mechanism_names()) > 1)
     assert {path.name for path in folder.iterdir()} == {"README.md", "four_bar.jpg", "strip.jpg"}
     text = (folder / "README.md").read_text()
-    assert "## Four bar\n![Four bar](four_bar.jpg)\n\nFour-bar crank-rocker A-B-C-D: the crank turns" in text
+    assert "## Four bar\n![Four bar](four_bar.jpg)\\\nFour-bar crank-rocker A-B-C-D: the crank turns" in text
     assert "1 degree of freedom · repeats after 1 s ·" in text
     assert "SI units" not in text
     out.motion.write_bytes(out.motion.read_bytes() + b"\n")

@@ -16,6 +16,7 @@ from render.film.story.ramps import Ramp, eased
 from render.film.story.scenery import Scenery, Stand, between, focused, raised
 from render.film.story.words import plain
 from render.insights.meeting import happening, meets, place_of
+from shared.contract import JointMotion
 from shared.contract.shot import Section
 from shared.stage.errors import UserError
 
@@ -30,6 +31,10 @@ SLOWER = 0.4
 """The rate beside that of the loop."""
 EVENT = 0.6
 """Part of the move after which most happens."""
+ROPES = ("cord", "band")
+"""Looks of joints at which little is to be seen."""
+NEAR = 0.1
+"""Way of a joint that stays, in sizes of the machine."""
 FOLLOWED = 0.85
 """Part of the joint's way that the camera goes."""
 LYING, STANDING = ((-34.0, 34.0), (14.0, 44.0)), ((-40.0, 16.0), (6.0, 26.0))
@@ -71,14 +76,19 @@ def _busy(scenery: Scenery) -> float:
     return scenery.reasons[0].start if scenery.reasons else scenery.film.clock.start
 
 
-def busiest_joint(scenery: Scenery) -> str | None:
+def busiest_joint(scenery: Scenery, stays: bool = False) -> str | None:
     """Return the joint that is asked for, else the one where most happens.
 
-    Where bodies meet comes before pins, above before below; a pin that stands comes last.
+    Where bodies meet comes before pins, above before below; a pin that stands comes last, and ropes only where nothing
+    else is. One that ``stays`` is near its place all the time, if there is any.
     """
     joints = scenery.film.motion.joints
     if scenery.wishes.joint is not None:
         return scenery.wishes.joint
+    joints = {name: joint for name, joint in joints.items() if joint.look not in ROPES} or joints
+    if stays:
+        joints = {name: joint for name, joint in joints.items() if _way(joint) < NEAR * scenery.across} or joints
+        return max(joints, key=lambda name: float(happening(scenery.film.motion, name).max()), default=None)
     if not joints:
         return None
     tops = {name: _height(scenery, name) for name in joints}
@@ -88,10 +98,15 @@ def busiest_joint(scenery: Scenery) -> str | None:
     def worth(name: str) -> tuple[bool, bool, bool, float]:
         joint = joints[name]
         on_top = tops[name] >= highest - 0.35 * stack - 1e-9
-        moves = meets(joint) or float(max(np.ptp(joint.x), np.ptp(joint.y))) > 0.02 * scenery.across
+        moves = meets(joint) or _way(joint) > 0.02 * scenery.across
         return meets(joint), moves, on_top, float(happening(scenery.film.motion, name).max())
 
     return max(joints, key=worth)
+
+
+def _way(joint: JointMotion) -> float:
+    """Return how far a joint goes (m)."""
+    return float(max(np.ptp(part) for part in place_of(joint)))
 
 
 def _height(scenery: Scenery, name: str) -> float:
@@ -149,10 +164,12 @@ def _aimed(scenery: Scenery, stand: Stand, place: tuple[float, float, float]) ->
 
 
 def _caption(scenery: Scenery, name: str) -> str:
-    """Return what there is to say of a joint and is not the story's stop or its motion; else its name."""
-    said = {scenery.reasons[0].template if scenery.reasons else "", scenery.of_motion and scenery.of_motion.template}
-    own = [each for each in (*scenery.shows, *scenery.reasons) if name in each.joints and each.template not in said]
-    insight = next((each for each in own if scenery.fits(each)), None)
+    """Return an insight that is neither the story's stop nor its motion, best of the joint; else the joint's name."""
+    said = [each for each in (*scenery.reasons[:1], scenery.of_motion) if each is not None]
+    told = {each.template for each in said} | {abs(each.number) for each in said}
+    every = [each for each in (*scenery.shows, *scenery.reasons) if scenery.fits(each)]
+    new = [each for each in every if each.template not in told and abs(each.number) not in told]
+    insight = next((each for each in new if name in each.joints), next(iter(new), None))
     return scenery.say("joint", name=plain(name)) if insight is None else scenery.sentence(insight)
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from render.film.camera import point
-from render.film.framing import in_studio
+from render.film.framing import axes, in_studio
 from render.film.story.frame import Caption, Over, Picture, Shot, shown_in
 from render.film.story.ramps import Ramp, Warp, eased, warped
 from render.film.story.scenery import Scenery, Stand, between, raised, turned
@@ -19,9 +19,10 @@ from shared.contract.quantity import figures
 SECONDS, FADE = 2.4, 0.5
 
 
-SMALL, CLOSER, CLOSEST = 0.15, 0.22, 0.25
-"""Parts of the picture's area: a machine that takes less opens and ends closer, so that it takes so much, from this
-part of the distance at least."""
+SMALL, CLOSER = 0.15, 0.27
+"""Parts of the picture's area: a machine that takes less opens and ends closer, so that it takes about so much."""
+CLOSEST, TRIES = 0.2, 61
+"""Part of the distance at least, and distances that are tried."""
 
 
 def opening(scenery: Scenery) -> Stand:
@@ -29,15 +30,23 @@ def opening(scenery: Scenery) -> Stand:
     whole = scenery.stand(strip=False)
     if scenery.share(scenery.stand()) >= SMALL or scenery.film.travel is not None:
         return whole
-    name = busiest_joint(scenery)
-    place = np.array(whole.target) if name is None else in_studio(np.array(place_at(scenery, name)), scenery.up)
-    near = whole
-    for part in np.linspace(1.0, CLOSEST, 31)[1:]:  # the joint keeps its place in the picture
+    place, stands = _kept(scenery, whole), []
+    for part in np.linspace(1.0, CLOSEST, TRIES)[1:]:
         target = point(place + part * (np.array(whole.target) - place))
-        near = replace(whole, target=target, distance=part * whole.distance)
-        if scenery.share(near) >= CLOSER and not scenery.misses(near):
-            break
-    return raised(near, scenery.up, scenery.top)
+        near = raised(replace(whole, target=target, distance=part * whole.distance), scenery.up, scenery.top)
+        if scenery.share(near) >= SMALL and not scenery.misses(near):
+            stands.append(near)
+    return min(stands, key=lambda near: abs(scenery.share(near) - CLOSER), default=whole)
+
+
+def _kept(scenery: Scenery, whole: Stand) -> np.ndarray:
+    """Return the point (3,) that keeps its place in the picture: a joint, or the end of the machine beside it."""
+    rows = axes(whole.azimuth, whole.elevation)
+    name, few = busiest_joint(scenery, stays=True), in_studio(scenery.film.subject.few, scenery.up) @ rows.T
+    low, high = few.min(axis=0), few.max(axis=0)
+    at = (low + high) / 2 if name is None else rows @ in_studio(np.array(place_at(scenery, name)), scenery.up)
+    part = (at - low) / np.maximum(high - low, 1e-9)
+    return np.where(part > 2 / 3, high, np.where(part < 1 / 3, low, at)) @ rows
 
 
 def title(scenery: Scenery, after: Shot | None) -> Shot | None:

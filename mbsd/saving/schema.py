@@ -75,6 +75,8 @@ def schema() -> dict[str, Any]:
     }
     definitions = {"marker": marker, "body": body, "start": start, "velocity": velocity, "law": {"oneOf": laws}}
     definitions["cycle"] = {"oneOf": cycles}
+    corners = {"type": "array", "minItems": 2, "items": PAIR | {"minItems": 3, "maxItems": 3}}
+    definitions["outline"] = _object({"body": {"type": "string"}, "corners": corners, "hole": {"type": "boolean"}})
     definitions["joint"] = {
         "oneOf": [_kind(name) for name, kind in sorted(KINDS.items()) if kind.saved and not kind.driven]
     }
@@ -85,7 +87,9 @@ def schema() -> dict[str, Any]:
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Model",
         "description": "A mechanism: SI units, radians, counter-clockwise. Body 'ground' is always there.",
-        **_object(top, {"events": ({"type": "object", "maxProperties": 0}, False)}),
+        **_object(
+            top, {"outlines": (_table("outline"), False), "events": ({"type": "object", "maxProperties": 0}, False)}
+        ),
         "$defs": definitions,
     }
 

@@ -265,8 +265,8 @@ def _beats(p: escapement.Params, duration: float) -> list[float]:
 
         start = guard(y + 1e-6 * rate(t, y))
         crossing.terminal = True  # pyright: ignore[reportFunctionMemberAccess]
-        found = solve_ivp(rate, (t, t + 5), y, rtol=1e-11, atol=1e-13, events=crossing, method="DOP853")
-        t, y = found.t[-1], found.y[:, -1]
+        swept = solve_ivp(rate, (t, t + 5), y, rtol=1e-11, atol=1e-13, events=crossing, method="DOP853")
+        t, y = swept.t[-1], swept.y[:, -1]
 
     def beat(first: np.ndarray, last: np.ndarray) -> None:
         """Go on to where a tooth drops on the pallet that locks at ``first``, and until it leaves it at ``last``."""

@@ -254,7 +254,7 @@ def test_the_plate_of_the_wobble_engine_leans_with_its_shaft_and_does_not_turn()
     turn = p.speed * sol.t
     cone = [np.full_like(turn, math.cos(bend)), -math.sin(bend) * np.sin(turn), math.sin(bend) * np.cos(turn)]
     np.testing.assert_allclose(normal, np.stack(cone, axis=1), atol=1e-12)
-    assert np.abs(sol.body("plate").rotation[:, 1, 2]).max() < 0.2
+    assert np.abs(sol.body("plate").rotation[:, 1, 2]).max() < 0.3
     slides = [np.ptp(sol.joint(f"cylinder_{k + 1}").slide) for k in range(p.pistons)]
     assert min(slides) > 1.9 * p.circle * math.sin(bend)
 

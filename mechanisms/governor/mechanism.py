@@ -34,7 +34,7 @@ def build(p: Params) -> Mechanism:
     m = Mechanism("governor")
     out, down = p.link * sin(radians(p.lean)), p.link * cos(radians(p.lean))
     spindle = m.shaft("spindle", (0.0, 0.0, -2.9 * p.link), (0.0, 0.0, 0.1 * p.link), 0.1 * p.beside, mass=0.1)
-    sleeve = m.body("sleeve", p.sleeve, inertia=(1e-5, 1e-5, 1e-5), at=(0.0, 0.0, -2 * down))
+    sleeve = m.body("sleeve", p.sleeve, inertia=(5e-5, 5e-5, 5e-5), at=(0.0, 0.0, -2 * down))
     m.revolute("bearing", m.ground, spindle, at=(0.0, 0.0, -2.6 * p.link), axis=(0, 0, 1))
     m.cylindrical("slide", spindle, sleeve, at=(0.0, 0.0, -2 * down), axis=(0, 0, 1))
     for side, way in (("left", -1.0), ("right", 1.0)):
@@ -43,10 +43,10 @@ def build(p: Params) -> Mechanism:
         tip = (way * (p.beside + out * p.arm / p.link), 0.0, -down * p.arm / p.link)
         arm = m.body(f"arm_{side}", p.ball, inertia=(1e-4, 1e-4, 1e-4), at=tip)
         half = ((knee[0] + foot[0]) / 2, 0.0, -1.5 * down)
-        link = m.body(f"link_{side}", p.rod, inertia=(5e-6, 5e-6, 5e-6), at=half)
+        link = m.body(f"link_{side}", p.rod, inertia=(2e-5, 2e-5, 2e-5), at=half)
         m.revolute(f"pivot_{side}", arm, spindle, at=pivot, axis=(0, 1, 0))
         m.revolute(f"knee_{side}", arm, link, at=knee, axis=(0, 1, 0))
-        m.revolute(f"foot_{side}", sleeve, link, at=foot, axis=(0, 1, 0))
+        m.spherical(f"foot_{side}", sleeve, link, at=foot)
     m.drag("damper", sleeve, p.damper)
     turn = function(
         lambda t: p.mean * t - p.swing / p.slow * sin(p.slow * t),

@@ -121,7 +121,7 @@ def _uncut(
     for part in wider:
         if all(cut_share(view, stood(part), thing, AIR) < WHOLE for thing in things):
             return part
-    parts = [*np.linspace(low, 0.0, TRIES), *wider[1:], 1.0]
+    parts = [*np.linspace(low, 0.0, TRIES), *wider[1:]]
     misses = [max(near_miss(view, stood(part), thing) for thing in things) for part in parts]
     return float(parts[int(np.argmin(np.round(misses, 3)))])
 

@@ -7,7 +7,7 @@ redundant joint that opens.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -197,8 +197,8 @@ class _NewtonMarch(NewtonMarch):
 
     def error_of_step(self, status: int, index: int) -> Exception:
         """Return the error for a refused step that nothing cures."""
-        steps, arrays = self.steps, self.arrays
-        return error_of_step(self.ready.packed, status, steps.times, index, steps.drives, arrays["q"], arrays["v"])
+        steps, rates = self.steps, np.abs(self.arrays["v"][:, 5::3])
+        return error_of_step(self.ready.packed, status, steps.times, index, steps.drives, rates)
 
 
 def _newton(ready: Prepared, steps: Steps, switch_at: np.ndarray) -> March:
@@ -244,35 +244,37 @@ def refuse_disagreeing(
 
 
 def error_of_step(
-    packed: Packed, status: int, grid: np.ndarray, index: int, drives: np.ndarray, q: np.ndarray, v: np.ndarray
-) -> Exception:
-    """Return the error for a step that halving does not cure."""
+    packed: Packed, status: int, times: np.ndarray, index: int, drives: np.ndarray, rates: np.ndarray,
+    weak: Callable[[int], str] = lambda row: "", driven: str = "body",
+) -> Exception:  # fmt: skip
+    """Return the error for a step that halving does not cure.
+
+    ``rates`` (T, bodies): how fast each turns (rad/s). ``weak``: words about the pose of a step.
+    """
     last = max(index - 1, 0)
-    rates = np.abs(v[last].reshape(-1, 3)[1:, 2])
-    where = f"t = {grid[last]:.6g} s ({driver_values(packed, drives[last])})"
+    where, at = f"t = {times[last]:.6g} s ({driver_values(packed, drives[last])})", weak(last)
     if index == 0:
         return SingularPoseError(
-            f"{packed.name}: the start pose at {where} is singular (a toggle or change point): "
-            "the drivers do not fix the motion here. Start a little before or after it, or drive another body."
+            f"{packed.name}: the start pose at {where} is singular (a toggle or change point){at}: the drivers do not "
+            f"fix the motion here. Start a little before or after it, or drive another {driven}."
         )
-    bodies = packed.body_names[1:]
-    fastest = ", ".join(bodies[b] for b in np.argsort(-rates)[:2])
-    usual = float(np.median(np.abs(v[: last + 1].reshape(last + 1, -1, 3)[:, 1:, 2]).max(axis=1)))
-    if rates.max() > RUNAWAY * usual:
+    fastest = ", ".join(packed.body_names[1 + b] for b in np.argsort(-rates[last])[:2])
+    usual = float(np.median(rates[: last + 1].max(axis=1)))
+    if rates[last].max() > RUNAWAY * usual:
         return SingularPoseError(
-            f"{packed.name}: the links cannot follow the drivers beyond {where}: a toggle, where {fastest} "
-            f"run away ({written(rates.max(), 'rad/s')}, {written(usual, 'rad/s')} before). Drive within the "
-            "reachable range, change the lengths, or drive another body."
+            f"{packed.name}: the links cannot follow the drivers beyond {where}: a toggle{at}, where {fastest} "
+            f"run away ({written(float(rates[last].max()), 'rad/s')}, {written(usual, 'rad/s')} before). Drive within "
+            f"the reachable range, change the lengths, or drive another {driven}."
         )
     if status == newton.BRANCH_DOUBT:
         return BranchError(
-            f"{packed.name}: after {where} the motion would jump to the other assembly, and steps down to "
-            f"{grid[index] - grid[last]:.1e} s do not cure it. A law jumps there, or the drivers rest where two "
+            f"{packed.name}: after {where} the motion would jump to the other assembly{at}, and steps down to "
+            f"{times[index] - times[last]:.1e} s do not cure it. A law jumps there, or the drivers rest where two "
             "assemblies meet; end the motion before it."
         )
     return SingularPoseError(
-        f"{packed.name}: the pose at {where} is singular, and no smooth motion through it was found: the drivers do "
-        "not decide how the links go on. End the motion before it, or add a link that decides."
+        f"{packed.name}: the pose at {where} is singular{at}, and no smooth motion through it was found: the drivers "
+        "do not decide how the links go on. End the motion before it, or add a link that decides."
     )
 
 

@@ -32,9 +32,9 @@ class NewtonMarch(ABC):
         self.ready, self.steps = ready, steps
         self.sequence, self.factors = ready.sequence, ready.factors
         self._repeats = bool(ready.mobility.redundant_rows)
-        self.passages = Passages(self.solver(), steps, switch_at)
         self.arrays = self.room()
         """By name (T, ...); among them ``poses``, residual (T,) and determinant (T, d)."""
+        self.passages = Passages(self.solver(), steps, switch_at)
         self.filled: list[np.ndarray] = []
         """Rows whose poses are those of each passage."""
 
@@ -78,7 +78,8 @@ class NewtonMarch(ABC):
             if index == 0:
                 raise self.error_of_step(status, 0)
             if not self.passages.passages and steps.follow_laws():
-                self.arrays, first, chosen = self.room(), 0, 0
+                self.arrays.update(self.room())
+                first = chosen = 0
                 continue
             if self._repeats and (index - 1 > chosen or self.sequence is self.ready.sequence):
                 solver = self.passages.solver_at(index - 1, self.arrays[self.poses[0]])
@@ -96,7 +97,7 @@ class NewtonMarch(ABC):
                 continue
             if not steps.divide(index):
                 raise self.error_of_step(status, index)
-            self.arrays = {name: np.insert(array, index, 0.0, axis=0) for name, array in self.arrays.items()}
+            self.arrays.update({name: np.insert(array, index, 0.0, axis=0) for name, array in self.arrays.items()})
             first = index
 
     def fill(self) -> None:

@@ -29,12 +29,12 @@ from mbsd.spatial.model.mechanism import STANDARD_GRAVITY
 if TYPE_CHECKING:
     from typing import Self
 
+    from mbsd.analyses.modes import Mode
     from mbsd.dynamics.batch.simulate_many import Simulations
     from mbsd.dynamics.measures.kinds import Measure
     from mbsd.results.views import Mobility
     from mbsd.spatial.analyses.equilibrium import Equilibrium
     from mbsd.spatial.analyses.linearise import Linearisation
-    from mbsd.spatial.analyses.modes import Mode
     from mbsd.spatial.results.solution import Solution
 
 __all__ = ["STANDARD_GRAVITY", "Body", "Joint", "Marker", "Mechanism"]

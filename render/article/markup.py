@@ -78,9 +78,9 @@ class Markup:
                     title = words
                 else:
                     close()
-                    found = HEADING.fullmatch(words)
+                    match = HEADING.fullmatch(words)
                     head, key = (
-                        (found[1], found[2]) if found else (words, re.sub(r"\W+", "-", words.lower()).strip("-"))
+                        (match[1], match[2]) if match else (words, re.sub(r"\W+", "-", words.lower()).strip("-"))
                     )
                 k += 3
                 continue
@@ -110,13 +110,13 @@ class Markup:
     def _scene(self, line: Token) -> dict[str, Any] | None:
         """Return what is bound to a paragraph, and take its last line away; each paragraph has at least {}."""
         *text, last = line.content.split("\n")
-        found = SCENE.fullmatch(last.strip())
-        if found is None:
+        match = SCENE.fullmatch(last.strip())
+        if match is None:
             return {}
         (fresh,) = self._parser.parseInline("\n".join(text))
         line.children = fresh.children
         scene: dict[str, Any] = {}
-        for pair in found[1].split(" "):
+        for pair in match[1].split(" "):
             key, _, value = pair.partition("=")
             scene[key] = self._value(key, value)
         return scene

@@ -10,8 +10,7 @@ from urllib.parse import quote, unquote
 import numpy as np
 from numpy.typing import NDArray
 
-from render.insights.insight import in_words
-from shared.contract.quantity import live
+from shared.contract.quantity import live, written
 from shared.stage.errors import UserError, did_you_mean
 
 # Addresses are links of the text, and page/src/article/quantities.js reads the same ones:
@@ -59,8 +58,8 @@ class Series:
             turns = measure == "now" and float(np.ptp(self.values)) > 2 * math.pi
             return degrees(value % (2 * math.pi) if turns else value)
         if measure == "now":
-            return live(self.values, self.unit, DIGITS["now"])(value).replace("N m", "N·m")
-        return in_words(value, self.unit, DIGITS[measure])
+            return live(self.values, self.unit, DIGITS["now"])(value)
+        return written(value, self.unit, DIGITS[measure])
 
 
 def degrees(value: float) -> str:

@@ -45,7 +45,7 @@ SORTS = {"body": ("body",), "joint": ("joint",), "point": ("point",), "load": ("
 WHOLE = 0.95
 """Part of the motion: an insight over more of it is bound to all of it."""
 SEVERAL = 6
-"""Names that are told one by one, at most."""
+"""Names that are listed one by one, at most."""
 SPACE = "\N{NO-BREAK SPACE}"
 """Between a number and its unit."""
 
@@ -71,7 +71,7 @@ class Machine:
 
     @cached_property
     def insights(self) -> list[Insight]:
-        """What it shows, the most telling first."""
+        """Insights, the most telling first."""
         return insights(self.motion)
 
 
@@ -222,10 +222,10 @@ class Sentences:
         for name, joint in self.motion.joints.items():
             groups.setdefault(joint.pair or joint.kind, []).append(name)
         for kind, names in groups.items():
-            one, several = self.kinds.get(kind, [kind.replace("_", " "), f"{kind.replace('_', ' ')}s"])
+            single, plural = self.kinds.get(kind, [kind.replace("_", " "), f"{kind.replace('_', ' ')}s"])
             shown = [self._shown_joint(name) for name in names]
-            told = f" ({listed(shown)})" if len(names) <= SEVERAL and names != [one] else ""
-            yield f"{self.count(len(names))} {escaped(one if len(names) == 1 else several)}{told}"
+            suffix = f" ({listed(shown)})" if len(names) <= SEVERAL and names != [single] else ""
+            yield f"{self.count(len(names))} {escaped(single if len(names) == 1 else plural)}{suffix}"
 
     def _shown_joint(self, name: str) -> str:
         text, is_there = name.replace("_", " "), name in self.machine.payload["joints"]

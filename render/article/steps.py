@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,8 +24,9 @@ from render.article.sentences import (
     prose,
 )
 from render.insights import Insight, insights
-from render.insights.insight import Named, capital, in_words, listed, said
+from render.insights.insight import Named, capital, listed, said
 from render.view.payload import title_of
+from shared.contract.quantity import written
 
 WAYS = ("stroke", "reach", "even_return", "period")
 """Kinds that tell of ways and times, but are no trick."""
@@ -83,12 +84,13 @@ def steps_of(machine: Machine) -> list[Step]:
 class _Steps(Sentences):
     def __init__(self, machine: Machine) -> None:
         super().__init__(machine)
-        kinds: dict[str, Insight] = {}
+        first: dict[str, Insight] = {}
         for each in machine.insights:
-            kinds.setdefault(each.kind, each)
-        moving = [each for kind, each in kinds.items() if kind in MOTION]
+            first.setdefault(each.kind, each)
+        self.insights = list(first.values())
+        moving = [each for each in self.insights if each.kind in MOTION]
         self.tricks = moving[: MOST["trick"]]
-        self.ways = [*moving[MOST["trick"] :], *(each for kind, each in kinds.items() if kind in WAYS)]
+        self.ways = [*moving[MOST["trick"] :], *(each for each in self.insights if each.kind in WAYS)]
 
     def what(self) -> Iterator[str]:
         """Yield the docstring and how the article is used."""
@@ -100,9 +102,9 @@ class _Steps(Sentences):
     def parts(self) -> Iterator[str]:
         """Yield bodies, joints, and what drives it."""
         names = [self.body(name) for name in self.motion.bodies]
-        told = names if len(names) <= 2 * SEVERAL else [*names[: 2 * SEVERAL], "more"]
+        shown = names if len(names) <= 2 * SEVERAL else [*names[: 2 * SEVERAL], "more"]
         key = "body" if len(names) == 1 else "bodies"
-        rows = [self.words[key].format(count=self.count(len(names)), names=listed(told))]
+        rows = [self.words[key].format(count=self.count(len(names)), names=listed(shown))]
         if joints := list(self.joints()):
             rows.append(self.words["joints"].format(joints=capital(listed(joints))))
         crank = self.seen.input
@@ -125,22 +127,22 @@ class _Steps(Sentences):
 
     def forces(self) -> Iterator[str]:
         """Yield efforts, reactions, balance and energy; then those of the moment."""
-        rows = [each for each in self.machine.insights if each.kind not in (*MOTION, *WAYS, *LIMITS, *UNTOLD)]
+        rows = [each for each in self.insights if each.kind not in (*MOTION, *WAYS, *LIMITS, *UNTOLD)]
         yield from self.paragraphs(rows[: MOST["forces"]], arrows=ARROWS)
-        told = []
+        readings = []
         for name in self.loads[:1]:
             effort = self.reading("now", "driver", name, "effort")
-            told.append(self.words["gives"].format(load=said(Named("load", (name,)), self.plain), effort=effort))
+            readings.append(self.words["gives"].format(load=said(Named("load", (name,)), self.plain), effort=effort))
         if most := self.heaviest:
             force = self.reading("now", "joint", most, "size")
-            told.append(self.words["carries"].format(joint=self.joint(most), force=force))
-        if told:
+            readings.append(self.words["carries"].format(joint=self.joint(most), force=force))
+        if readings:
             curve = address("joint", most, "size") if most else self.curve
-            yield bound(self.dragged(told), speed=SLOW, arrows=ARROWS, curve=curve)
+            yield bound(self.dragged(readings), speed=SLOW, arrows=ARROWS, curve=curve)
 
     def limit(self) -> Iterator[str]:
         """Yield dead points, angles and lengths beyond which it jams; else that there are none."""
-        rows = [each for each in self.machine.insights if each.kind in LIMITS]
+        rows = [each for each in self.insights if each.kind in LIMITS]
         yield from self.paragraphs(rows[: MOST["limit"]])
         margin = np.asarray(self.motion.diagnostics.singularity_margin)
         if rows or not margin.size:
@@ -156,8 +158,7 @@ class _Steps(Sentences):
         """Yield numbers to drag, and the author's variants beside it."""
         numbers, outcomes = self.machine.designs.get("numbers", []), self.outcomes()
         if numbers and outcomes:
-            rows = [link(f"{each['label']} {_number(each['value'], each['unit'])}", f"number:{code(each['name'])}")
-                    for each in numbers]  # fmt: skip
+            rows = [self._with(each) for each in numbers]
             efforts = f"{max(0.01, 100 * self.machine.designs['efforts']):.2g}{SPACE}%"
             exact = self.words["between"].format(
                 places=_number(self.machine.designs["places"], "m", 2), efforts=efforts
@@ -166,13 +167,21 @@ class _Steps(Sentences):
             yield bound(text, curve=address("joint", self.heaviest, "size") if self.heaviest else self.curve)
         kind = self.tricks[0].kind if self.tricks else ""
         for variant, motion in self.machine.variants.items():
-            found = insights(motion)
-            first = next((each for each in found if each.kind == kind), found[0] if found else None)
+            shown = insights(motion)
+            first = next((each for each in shown if each.kind == kind), shown[0] if shown else None)
             title = capital(escaped(variant.replace("_", " ")))
             sentence = escaped(first.sentence()) if first else ""
-            yield bound(self.words["variant"].format(title=title, sentence=sentence).rstrip(), variant=code(variant))
+            text = self.words["variant"].format(title=title, sentence=sentence).rstrip()
+            yield bound(text, variant=code(variant), curve=self.curve)
         if not numbers and not self.machine.variants:
             yield self.words["no_numbers"].format(name=self.machine.name)
+
+    def _with(self, number: Mapping[str, Any]) -> str:
+        """Return a number to drag: ``a coupler of 120 mm``."""
+        label = str(number["label"])
+        key = "an" if label[:1].lower() in tuple("aeiou") else "a"
+        value = link(_number(number["value"], number["unit"]), f"number:{code(number['name'])}")
+        return self.words[key].format(label=escaped(label), value=value)
 
     def printed(self) -> Iterator[str]:
         """Yield the pieces, the largest one, and the least gap."""
@@ -201,7 +210,7 @@ class _Steps(Sentences):
 
 
 def _number(value: float, unit: str, digits: int = 3) -> str:
-    return in_words(value, unit, digits).replace(" ", SPACE)
+    return written(value, unit, digits).replace(" ", SPACE)
 
 
 def largest_piece(solid: dict[str, Any]) -> tuple[dict[str, Any], tuple[float, float]]:

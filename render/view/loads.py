@@ -61,7 +61,7 @@ def gap_places(film: Film, clearance: Clearance) -> list[GapPlace | None]:
             for (place, turned), piece in zip(frames, pieces, strict=True)
             if piece is not None
         ]
-        at = middle(*surfaces)
+        at = middle(*surfaces, gap=pair.gap)
         if pair.time is None:
             at = (at - frames[1][0]) @ frames[1][1]
         x, y, z = (float(value) for value in at)
@@ -69,13 +69,19 @@ def gap_places(film: Film, clearance: Clearance) -> list[GapPlace | None]:
     return out
 
 
-def middle(first: Array, second: Array) -> Array:
-    """Return (3,) halfway between the two nearest points of triangles (n, 3, 3) and (m, 3, 3)."""
+def middle(first: Array, second: Array, gap: float = np.inf) -> Array:
+    """Return (3,) halfway between the two nearest points of triangles (n, 3, 3) and (m, 3, 3).
+
+    ``gap`` (m), where it is known, spares the search among points that are much farther apart.
+    """
     size = max(float(np.ptp(faces.reshape(-1, 3), axis=0).max()) for faces in (first, second))
     # Far triangles of a large piece need no points: those within reach of the other's box alone.
     near = [_overlapping(faces, other, size / 4) for faces, other in ((first, second), (second, first))]
     a, b = (_points(faces, size / FINE) for faces in near)
-    distance, index = KDTree(b).query(a)
+    tree = KDTree(b)
+    distance, index = tree.query(a, distance_upper_bound=2 * gap + 4 * size / FINE)
+    if not np.isfinite(distance).any():
+        distance, index = tree.query(a)
     k = int(np.argmin(distance))
     return (a[k] + b[int(np.asarray(index)[k])]) / 2
 

@@ -15,7 +15,7 @@ from render.insights import insights
 from render.report import description
 from render.report.facts import facts
 from render.view.payload import title_of
-from shared.contract import AnyMotion, Motion, read_any_motion, read_parts
+from shared.contract import AnyMotion, Motion, Motion3, read_any_motion, read_parts
 from shared.stage.files import write_bytes
 from shared.stage.paths import Out, mechanism_file
 
@@ -54,7 +54,7 @@ def purposes(name: str, said: str, motion: AnyMotion) -> list[str]:
     out = [purpose for purpose, pattern in WORDS.items() if re.search(pattern, text, re.IGNORECASE)]
     if ENGINE.search(text):
         out.append("engines")
-    if not isinstance(motion, Motion):
+    if isinstance(motion, Motion3):
         out.append("moves in space")
     things = (motion.joints, motion.drivers, motion.forces, getattr(motion, "contacts", {}))
     kinds = {thing.kind for group in things for thing in group.values()}

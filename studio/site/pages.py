@@ -145,7 +145,7 @@ def machine(entry: Entry, others: Sequence[Entry]) -> str:
         else f'<img class="film" src="{escape(entry.picture)}" width="960" height="540" alt="{escape(entry.title)}">'
     )
     moved = " Move a number and see what it changes." if entry.has_sliders else ""
-    told = f'\n<p><a href="{escape(entry.article)}">How it works, step by step</a></p>' if entry.article else ""
+    article = f'\n<p><a href="{escape(entry.article)}">How it works, step by step</a></p>' if entry.article else ""
     place, sizes = f"{entry.name}/machine.html", 'width="960" height="640" loading="lazy"'
     embedded = f'<iframe src="{place}" title="{entry.title}" {sizes}></iframe>'
     inside = (
@@ -159,7 +159,7 @@ def machine(entry: Entry, others: Sequence[Entry]) -> str:
 <button type="button" class="theme">Dark</button>
 </header>
 <main>
-<p class="lead">{_prose(entry.said)}</p>{told}
+<p class="lead">{_prose(entry.said)}</p>{article}
 {film}
 <h2>The machine</h2>
 <p>Turn it, play it, click a joint for its forces.{moved} <a href="machine.html">On a page of its own</a></p>

@@ -270,6 +270,20 @@ def test_a_drawing_is_an_outline(tmp_path: Path) -> None:
         m.outline("slug", file)
 
 
+def test_a_spline_of_a_drawing_is_that_of_its_control_points(tmp_path: Path) -> None:
+    """Control points on a line at equal distances, and a bend between: a cubic through the ends, closed by a line."""
+    knots = [0, 0, 0, 0, 1, 1, 1, 1]
+    control = [(0, 0), (0, 40), (60, 40), (60, 0)]
+    groups = [(0, "SPLINE"), (71, 3), *((40, knot) for knot in knots)]
+    groups += [(code, value) for point in control for code, value in zip((10, 20), point, strict=True)]
+    groups += [(0, "LINE"), (10, 0), (20, 0), (11, 60), (21, 0)]
+    file = tmp_path / "bow.dxf"
+    whole = [(0, "SECTION"), (2, "ENTITIES"), *groups, (0, "ENDSEC"), (0, "EOF")]
+    file.write_text("".join(f"{code}\n{value}\n" for code, value in whole))
+    bow = Mechanism("bow").outline("ground", file)
+    assert bow.area == pytest.approx(1.44e-3, rel=1e-5)  # of a Bezier curve: 3/20 of the sum of cross products
+
+
 @settings(max_examples=20, deadline=None)
 @given(st.lists(st.floats(0.8, 1.0), min_size=4, max_size=9))
 def test_splines_become_arcs_within_the_tolerance(radii: list[float]) -> None:

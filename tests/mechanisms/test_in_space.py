@@ -15,9 +15,18 @@ from msgspec.structs import replace
 from mbsd.spatial import Mechanism
 from mbsd.spatial.model.rotation import rotation_matrix
 from mechanisms.__main__ import main
+from mechanisms.bennett import mechanism as bennett
+from mechanisms.bevel_differential import mechanism as differential
+from mechanisms.bicycle import mechanism as bicycle
+from mechanisms.bricard import mechanism as bricard
+from mechanisms.delta_robot import mechanism as delta
+from mechanisms.governor import mechanism as governor
+from mechanisms.gyroscope import mechanism as gyroscope
 from mechanisms.heavy_top import mechanism as top
+from mechanisms.rolling_coin import mechanism as coin
 from mechanisms.rssr import mechanism as rssr
 from mechanisms.sarrus import mechanism as sarrus
+from mechanisms.simple_car import mechanism as car
 from mechanisms.spatial_slider_crank import mechanism as slider_crank
 from mechanisms.stages.automatic.space.machine import link_poses, solids_in_space
 from mechanisms.stages.automatic.space.moves import Moves
@@ -27,6 +36,9 @@ from mechanisms.stages.parts.meshes import check_mesh, only_solid
 from mechanisms.stages.parts_files import read_mesh, stl_bytes
 from mechanisms.stages.solve.space.motion_file import to_motion3
 from mechanisms.stages.solve.stage import solve
+from mechanisms.stewart_platform import mechanism as stewart
+from mechanisms.swash_plate_pump import mechanism as pump
+from mechanisms.wobble_engine import mechanism as wobble
 from shared.contract.clearance import Clearance
 from shared.contract.parts import Link
 from shared.shapes.facets import volume_of
@@ -35,6 +47,9 @@ from shared.stage.paths import mechanism_names, planar_names
 from tests.mechanisms.clearance.clearance_pieces import parts_of
 
 NAMES = sorted(set(mechanism_names()) - set(planar_names()))
+MANY_PIECES = {"bicycle", "bricard", "delta_robot", "governor", "sarrus", "schatz_mixer", "simple_car"}
+MANY_PIECES |= {"stewart_platform", "wobble_engine"}
+"""Machines whose solids take seconds; the others have every kind of part but a cylinder with its rod."""
 PROVEN = ("cardan_shaft",)
 """Machines of which the proof is quick; of the others `make test-slow` has it."""
 
@@ -47,6 +62,7 @@ def solution(name: str) -> Any:
 
 def test_the_gallery_has_mechanisms_in_space() -> None:
     assert {"cardan_shaft", "heavy_top", "rssr", "sarrus", "spatial_slider_crank"} <= set(NAMES)
+    assert len(NAMES) == 18
     assert "four_bar" in planar_names()
 
 
@@ -129,6 +145,137 @@ def test_the_sarrus_linkage_moves_its_platform_straight_up_and_holds_one_row_twi
     assert sol.mobility.redundant_rows == 1
 
 
+def test_the_gyroscope_precesses_at_the_torque_over_the_momentum_of_its_disc() -> None:
+    sol, p = solution("gyroscope"), gyroscope.Params()
+    np.testing.assert_allclose(sol.joint("post").turn_rate, gyroscope.precession(p), rtol=1e-6)
+    assert np.abs(sol.joint("hinge").turn).max() < 1e-6
+
+
+def test_the_governor_at_a_steady_speed_stands_where_its_weights_balance() -> None:
+    """Virtual work of weights and of centrifugal forces; without sleeve and links the height is g / w^2."""
+    p = governor.Params(swing=0.0, damper=12.0)
+    arm = governor.build(p).simulate(duration=8.0, steps=20).body("arm_left").place[-1]
+    radius = float(np.hypot(arm[0], arm[1]))
+    sine = (radius - p.beside) / p.arm
+    cosine = math.sqrt(1.0 - sine**2)
+    assert arm[2] == pytest.approx(-p.arm * cosine, abs=1e-4)
+    pull = p.ball * radius * p.arm * cosine + p.rod * (p.beside + p.link * sine / 2) * p.link * cosine / 2
+    weight = (p.ball * p.arm + 1.5 * p.rod * p.link + p.sleeve * p.link) * sine * 9.80665
+    assert p.mean**2 * pull == pytest.approx(weight, rel=1e-3)
+
+
+def test_the_delta_robot_takes_its_platform_round_a_circle_without_turning_it() -> None:
+    """Angles of the arms at (0.06, -0.04, -0.42) by inverse kinematics in other coordinates, in degrees."""
+    sol, p = solution("delta_robot"), delta.Params()
+    view = sol.body("platform")
+    circle = p.circle * np.stack([np.cos(p.speed * sol.t), np.sin(p.speed * sol.t)], axis=1)
+    np.testing.assert_allclose(view.place[:, :2], circle, atol=1e-8)
+    assert np.abs(view.rotation - np.eye(3)).max() < 1e-8
+    angles = [math.degrees(delta.angle(p, (0.06, -0.04, -0.42), k * 2 * math.pi / 3)) for k in range(3)]
+    assert angles == pytest.approx([19.98974845310761, 45.93069592471842, 32.16201139964748], abs=1e-10)
+
+
+def test_legs_of_the_stewart_platform_have_the_lengths_that_its_pose_asks_for() -> None:
+    sol, p = solution("stewart_platform"), stewart.Params()
+    for k in range(6):
+        foot, head = (sol.place(sol.mechanism.joints[f"{word}_{k + 1}"].i).place for word in ("cross", "ball"))
+        length = np.linalg.norm(head - foot, axis=1)
+        stroke = p.stroke * np.sin(p.speed * sol.t - 2 * math.pi * (k // 2) / 3)
+        np.testing.assert_allclose(np.ptp(length - stroke), 0.0, atol=1e-12)
+    assert np.linalg.norm(sol.body("platform").rotation[:, :2, 2], axis=1).min() > 0.1  # it tilts all the way round
+    assert (sol.mobility.dof, sol.mobility.redundant_rows) == (6, 0)
+
+
+def test_the_bennett_linkage_keeps_the_product_of_the_tangents_of_its_half_turns() -> None:
+    sol, p = solution("bennett"), bennett.Params()
+    alpha, beta = math.radians(p.twist), math.radians(p.other)
+    ratio = math.sin((beta + alpha) / 2) / math.sin((beta - alpha) / 2)
+    first = math.radians(p.middle)
+    second = 2 * math.atan(ratio / math.tan(first / 2))
+    turns = first + sol.joint("hinge_1").turn, second + sol.joint("hinge_2").turn
+    np.testing.assert_allclose(np.tan(turns[0] / 2) * np.tan(turns[1] / 2), ratio, rtol=1e-10)
+    assert (sol.mobility.dof, sol.mobility.redundant_rows) == (1, 3)
+
+
+def test_the_bricard_linkage_keeps_the_relation_of_its_turns() -> None:
+    sol, p = solution("bricard"), bricard.Params()
+    first = math.radians(p.middle)
+    second = math.acos(-math.cos(first) / (1 + math.cos(first)))
+    a, b = np.cos(first + sol.joint("hinge_1").turn), np.cos(second + sol.joint("hinge_2").turn)
+    assert np.abs(a + b + a * b).max() < 1e-10
+    assert (sol.mobility.dof, sol.mobility.redundant_rows) == (1, 1)
+
+
+def test_pistons_of_the_swash_plate_pump_move_as_a_cosine() -> None:
+    sol, p = solution("swash_plate_pump"), pump.Params()
+    slide = sol.joint("bore_1").slide
+    wanted = p.circle * math.tan(math.radians(p.tilt)) * (np.cos(p.speed * sol.t) - 1.0)
+    np.testing.assert_allclose(slide, wanted, atol=1e-12)
+
+
+def test_shafts_of_the_bevel_differential_turn_at_the_mean_of_its_cage() -> None:
+    sol, p = solution("bevel_differential"), differential.Params()
+    left, right = (sol.body(name).w[:, 0] for name in ("left", "right"))
+    cage = sol.body("cage").w[:, 0]
+    np.testing.assert_allclose(left + right, 2 * cage, atol=1e-10)
+    assert np.ptp(left - right) > 1.0
+    pin = sol.joint("pin").turn_rate
+    np.testing.assert_allclose(np.abs(pin), np.abs(left - cage) * p.side / p.planet, atol=1e-10)
+
+
+def test_the_coin_rolls_round_its_circle_at_its_closed_rate() -> None:
+    """A thin coin of radius 0.3 at 20 degrees on a circle of 1.2: turn 1.3984872, spin -6.0722596 rad/s at g 9.81."""
+    sol, p = solution("rolling_coin"), coin.Params()
+    place, turn = sol.point("P").place, coin.rates(p)[0]
+    np.testing.assert_allclose(place[:, 0], p.circle * np.cos(turn * sol.t), atol=1e-6)
+    np.testing.assert_allclose(place[:, 1], p.circle * np.sin(turn * sol.t), atol=1e-6)
+    thin = coin.rates(coin.Params(ring=0.3, rim=0.0, circle=1.2))
+    wanted = np.array([1.3984872052205763, -6.072259615250961]) * math.sqrt(9.80665 / 9.81)
+    np.testing.assert_allclose(thin, wanted, rtol=1e-9)
+
+
+def test_the_bicycle_has_the_eigenvalues_of_its_benchmark_and_rights_itself() -> None:
+    """Meijaard, Papadopoulos, Ruina, Schwab 2007, table 2, at 5 m/s."""
+    values = bicycle.build(bicycle.Params(push=0.0)).linearise("start").eigenvalues
+    for wanted in (-14.078389692798, -0.775341882196 + 4.464867713788j, -0.322866429004):
+        assert np.abs(values - wanted).min() < 1e-7
+    lean = np.degrees(np.arcsin(-solution("bicycle").body("frame").rotation[:, 1, 2]))
+    assert 3.0 < lean.max() < 6.0
+    assert abs(lean[-1]) < 2.0
+
+
+def test_the_plate_of_the_wobble_engine_leans_with_its_shaft_and_does_not_turn() -> None:
+    """Its normal goes round a cone of the bend; its own turn about the normal stays small."""
+    sol, p = solution("wobble_engine"), wobble.Params()
+    bend = math.radians(p.bend)
+    normal = sol.body("plate").rotation @ np.array([math.cos(bend), 0.0, math.sin(bend)])
+    turn = p.speed * sol.t
+    cone = [np.full_like(turn, math.cos(bend)), -math.sin(bend) * np.sin(turn), math.sin(bend) * np.cos(turn)]
+    np.testing.assert_allclose(normal, np.stack(cone, axis=1), atol=1e-12)
+    assert np.abs(sol.body("plate").rotation[:, 1, 2]).max() < 0.2
+    slides = [np.ptp(sol.joint(f"cylinder_{k + 1}").slide) for k in range(p.pistons)]
+    assert min(slides) > 1.9 * p.circle * math.sin(bend)
+
+
+def test_the_simple_car_goes_round_the_circle_of_its_steering() -> None:
+    """The middle of its rear axle has the radius base / tan(steering), but for the slip of its tyres."""
+    sol, p = solution("simple_car"), car.Params()
+    late = sol.t > 0.5
+    radius = np.linalg.norm(sol.point("P").velocity, axis=1)[late] / sol.body("body").w[late, 2]
+    np.testing.assert_allclose(radius, p.base / math.tan(math.radians(p.steer)), rtol=0.02)
+    assert sol.body("wheel_rear_left").place[:, 2].min() > 0.98 * p.radius
+
+
+def test_the_shafts_of_the_schatz_mixer_turn_at_half_to_twice_each_others_rate() -> None:
+    """Turns count from the pose in which tan(out) = 2 tan(in)."""
+    sol = solution("schatz_mixer")
+    turn, out = sol.joint("bearing_in").turn, sol.joint("bearing_out").turn
+    np.testing.assert_allclose(np.sin(out) * np.cos(turn), 2 * np.sin(turn) * np.cos(out), atol=1e-9)
+    ratio = np.abs(sol.joint("bearing_out").turn_rate / sol.joint("bearing_in").turn_rate)
+    assert [ratio.min(), ratio.max()] == pytest.approx([0.5, 2.0], abs=1e-3)
+    assert (sol.mobility.dof, sol.mobility.redundant_rows) == (1, 1)
+
+
 # -- parts -----------------------------------------------------------------------------------------------------------
 
 
@@ -144,13 +291,20 @@ def meshes(name: str) -> tuple[dict[str, list[Any]], Moves]:
             out.setdefault(body, []).append(mesh)
     moves = Moves(solution(name).mechanism, solution(name))
     for body, (joint, holder, z) in made.links.items():
-        from mechanisms.stages.automatic.space.ends import Link
+        from mechanisms.stages.automatic.space.pieces import Link
 
         moves.poses[body] = link_poses(moves, Link(joint, [], [], holder, np.array(z)))
     return out, moves
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if name not in PROVEN])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow) if name in MANY_PIECES else name
+        for name in NAMES
+        if name not in PROVEN
+    ],
+)
 def test_parts_are_watertight_and_no_two_bodies_share_room(name: str) -> None:
     """At eight poses of the motion, by exact intersections of the meshes."""
     from manifold3d import Manifold, Mesh

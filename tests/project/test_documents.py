@@ -19,7 +19,7 @@ from mechanisms.four_bar.mechanism import Params, build
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
 from tools.documents.lecture import NOTEBOOK, code, executed, read, written
-from tools.documents.readme_loop import CRANK, LINES, RATE, TURNS, frames, run
+from tools.documents.readme_loop import CRANK, LARGEST, LINES, RATE, SHAPES, TURNS, Shape, frames, run, shown_lines
 from tools.site.staging import THEORY, with_equations
 
 # docs/lecture.ipynb: its cells run in order, also without Jupyter, and what it shows is what they give now.
@@ -84,11 +84,10 @@ def test_a_cell_that_fails_is_an_error_with_its_traceback() -> None:
 # The loop at the top of README.md: its story has no seam, its lines are the four-bar's, its file is small.
 
 
-LOOP = ROOT / "docs" / "readme_loop.webp"
-
-
-def test_the_lines_are_twelve_and_make_the_four_bar_of_the_gallery() -> None:
+def test_the_lines_are_twelve_of_which_six_are_shown_and_make_the_four_bar_of_the_gallery() -> None:
     assert len(LINES.splitlines()) == 12
+    assert all(line.removesuffix(" …") in LINES.splitlines() for line in shown_lines().splitlines())
+    assert len(shown_lines().splitlines()) == 6
     made, wanted = run(CRANK)["sol"], build(Params()).sweep()
     for name in ("x", "y"):
         np.testing.assert_allclose(getattr(made.point("P"), name), getattr(wanted.point("P"), name), atol=1e-12)
@@ -110,7 +109,7 @@ def test_the_story_ends_where_it_begins_and_shows_reactions_once() -> None:
     step = TURNS / len(story)
     turned = [frame.part for frame in story] + [story[0].part]
     assert np.diff(np.unwrap(turned, period=1.0)) == pytest.approx(step, abs=1e-9)
-    assert (story[0].crank, story[0].solid, story[0].tilt) == (CRANK, 0.0, 0.0)
+    assert all((frame.crank, frame.solid, frame.tilt) == (CRANK, 1.0, 1.0) for frame in story[:RATE])
     assert story[-1].crank == CRANK
     assert max(abs(a.solid - b.solid) for a, b in zip(story, story[1:] + story[:1], strict=True)) < 0.3
     assert len({frame.crank for frame in story}) > 12, "the number glides"
@@ -122,12 +121,13 @@ def test_the_story_ends_where_it_begins_and_shows_reactions_once() -> None:
     assert max(frame.tilt for frame in story) == 1
 
 
-def test_the_file_is_small_and_what_the_story_says() -> None:
-    assert LOOP.stat().st_size <= 300_000
-    with Image.open(LOOP) as picture:
+@pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.target.stem)
+def test_the_files_are_small_and_what_the_story_says(shape: Shape) -> None:
+    assert shape.target.stat().st_size <= LARGEST
+    with Image.open(shape.target) as picture:
         assert picture.n_frames == len(frames())  # pyright: ignore[reportAttributeAccessIssue]
-        assert picture.size == (720, 315)
-    assert "docs/readme_loop.webp" in (ROOT / "README.md").read_text()
+        assert picture.size == (shape.width, shape.height)
+    assert f"docs/{shape.target.name}" in (ROOT / "README.md").read_text()
 
 
 # docs/theory.md lists the sources of the equations; the site shows the equations themselves.

@@ -35,7 +35,7 @@ def parallelogram() -> mbsd.Mechanism:
 
 
 def spherical(balls: bool) -> Mechanism:
-    """Return a four-bar of arcs about the origin, opposite ones equal: it folds flat twice a turn."""
+    """Return a four-bar of arcs about the origin, opposite ones equal, and a geared shaft; it folds flat twice."""
     first, last = np.array([0.0, 0.0, 1.0]), np.array([math.sin(LONG), 0.0, math.cos(LONG)])
     flat = [np.array([math.sin(turn), 0.0, math.cos(turn)]) for turn in (SHORT, SHORT + LONG)]
     b, c = about(first, START) @ flat[0], about(last, 2.0 * math.atan(SMOOTH * math.tan(START / 2))) @ flat[1]
@@ -52,6 +52,9 @@ def spherical(balls: bool) -> Mechanism:
     else:
         m.revolute("B", crank, coupler, at=b, axis=b)
         m.revolute("C", rocker, coupler, at=c, axis=c)
+    shaft = m.shaft("shaft", (2, 0, 0), (3, 0, 0), radius=0.05)
+    m.revolute("E", m.ground, shaft, at=(2, 0, 0), axis=(1, 0, 0))
+    m.gear_pair("gears", "D", "E", teeth=(17, 31))
     m.drive_turn("motor", "A", polynomial(0.0, 1.0))
     return m
 
@@ -78,6 +81,7 @@ def test_arcs_that_fold_flat_go_on_smoothly(balls: bool) -> None:
     sol = spherical(balls).sweep(times=TIMES)
     crank, rocker = START + sol.joint("A").turn, 2.0 * math.atan(SMOOTH * math.tan(START / 2)) + sol.joint("D").turn
     assert np.allclose(np.tan(rocker / 2) / np.tan(crank / 2), SMOOTH, rtol=1e-9)
+    assert np.allclose(31 * sol.joint("E").turn, -17 * sol.joint("D").turn, atol=1e-9)
     assert sol.stats.power_residual < 1e-7
     assert np.isfinite(sol.joint("B").force).all()
 

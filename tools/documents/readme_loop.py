@@ -1,9 +1,10 @@
-"""The loop at the top of README.md, filmed by the page in Chromium: docs/readme_loop.webp."""
+"""The loops at the top of README.md, filmed by the page in Chromium: docs/readme_loop.webp, readme_square.webp."""
 
 from __future__ import annotations
 
 import argparse
 import base64
+import io
 import json
 import os
 import subprocess
@@ -47,22 +48,25 @@ m.drive_angle("motor", crank, constant_rate(2 * pi))
 m.trace("P", coupler.at(0.060, 0.030))
 m.start_near(crank=0, coupler=45, rocker=100)
 sol = m.sweep()"""
+SHOWN_LINES = (0, 1, 2, 3, 5, 11)
+"""Lines that are shown: what is left out stands after them as an ellipsis."""
+LEFT_OUT = 5
 CHANGED = "{crank:.3f}"
 """Where the number stands that changes (m)."""
 CRANK = 0.040
 """The crank's length in mechanisms/four_bar (m)."""
-RATE = 12
+RATE = 10
 """Frames a second."""
-SECONDS = 6.4
+SECONDS = 6.0
 TURNS = 3
 """Turns of the crank in the loop, a whole number: it has no seam."""
-NUMBERS = ((0.5, CRANK), (1.2, 0.025), (2.2, 0.050), (2.8, CRANK))
+NUMBERS = ((1.9, CRANK), (2.4, 0.025), (3.2, 0.050), (3.7, CRANK))
 """Seconds and lengths of the crank (m); in between it glides, before and after it stays."""
-SOLID = ((2.9, 0.0), (3.35, 1.0), (5.85, 1.0), (6.3, 0.0))
+SOLID = ((1.3, 1.0), (1.8, 0.0), (3.7, 0.0), (4.2, 1.0))
 """How much of the solid parts is seen."""
-TILTED = ((3.2, 0.0), (4.0, 1.0), (5.3, 1.0), (6.0, 0.0))
+TILTED = ((1.0, 1.0), (1.7, 0.0), (3.9, 0.0), (4.6, 1.0))
 """How far the camera has gone from before the plane to where the film has it."""
-REACTIONS = ((3.9, 0.0), (4.1, 1.0), (5.1, 1.0), (5.3, 0.0))
+REACTIONS = ((4.6, 0.0), (4.8, 1.0), (5.7, 1.0), (5.9, 0.0))
 SHOWN = (SOLID, TILTED, REACTIONS)
 
 
@@ -114,25 +118,52 @@ def run(crank: float) -> dict[str, Any]:
 
 
 NAME = "four_bar"
-TARGET = DOCS / "readme_loop.webp"
-WIDTH, HEIGHT, LINES_WIDTH = 960, 420, 440
-SIZE = 720, 315
-"""Pixels of the file's pictures: filmed larger, their lines are thin and smooth."""
+FINER = 1.25
+"""Pixels that are filmed for one of the file: lines are thin and smooth."""
 CLOSER, BRIGHTER = 0.8, 1.5
 """Part of the film's height that is seen, and exposures of the page: the picture is small and narrow."""
-QUALITY = 44
-"""Quality of the WebP, of 100."""
+QUALITIES = range(60, 10, -5)
+"""Qualities of the WebP, of 100: the best whose file is small enough is taken."""
+LARGEST = 300_000
+"""Bytes of a file."""
+
+
+@dataclass(frozen=True)
+class Shape:
+    """One of the files: its pixels, and those of its letters and of the room for its lines."""
+
+    target: Path
+    width: int
+    height: int
+    letters: float
+    lines_size: int
+    """Width of the lines beside the machine, or their height above it."""
+    above: bool
+
+
+SHAPES = (
+    Shape(DOCS / "readme_loop.webp", 1000, 400, 16.4, 468, above=False),
+    Shape(DOCS / "readme_square.webp", 400, 400, 13.2, 164, above=True),
+)
+"""For a wide window and for a phone."""
 MINUTES = 60
 
 
-def plan(every: int = 1) -> dict[str, Any]:
+def shown_lines() -> str:
+    """Return the lines that are shown."""
+    lines = LINES.splitlines()
+    return "\n".join(f"{lines[k]} …" if k == LEFT_OUT else lines[k] for k in SHOWN_LINES)
+
+
+def plan(shape: Shape, every: int = 1) -> dict[str, Any]:
     """Return the browser's orders: the frames, and the motion with each number but the file's own."""
     shown = frames()[::every]
     others = sorted({frame.crank for frame in shown} - {CRANK})
     patches = [base64.b64encode(_motion(crank)).decode() for crank in others]
     low, high = _extent(read_payload(Out(NAME))["skeleton"])
     return {
-        "width": WIDTH, "height": HEIGHT, "lines_width": LINES_WIDTH, "lines": LINES, "changed": CHANGED,
+        "width": round(FINER * shape.width), "height": round(FINER * shape.height), "letters": FINER * shape.letters,
+        "lines_size": round(FINER * shape.lines_size), "above": shape.above, "lines": shown_lines(), "changed": CHANGED,
         "low": low, "high": high, "patches": patches, "closer": CLOSER, "brighter": BRIGHTER,
         "frames": [
             {
@@ -144,7 +175,7 @@ def plan(every: int = 1) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def film(every: int) -> bytes:
+def film(shape: Shape, every: int) -> bytes:
     """Return the animated WebP. Raises UserError where the browser is missing or fails."""
     browser = chromium()
     if browser is None:
@@ -152,7 +183,7 @@ def film(every: int) -> bytes:
     view.run(NAME)
     with tempfile.TemporaryDirectory(prefix="mbsd-loop-") as folder:
         planned = Path(folder) / "plan.json"
-        planned.write_text(json.dumps(plan(every)))
+        planned.write_text(json.dumps(plan(shape, every)))
         words = [node(), Path(__file__).with_name("loop.cjs"), Out(NAME).view, planned, folder]
         needs = {"NODE_PATH": str(node_modules()), "CHROMIUM": browser}
         needs["PAGE_BROWSER"] = str(PAGE / "browser" / "browser.cjs")
@@ -162,17 +193,22 @@ def film(every: int) -> bytes:
         )  # fmt: skip
         if done.returncode:
             raise UserError(f"the loop could not be filmed: {' '.join(done.stderr.split())[-600:]}")
-        return _webp(sorted(Path(folder).glob("*.png")), 1000 * every // RATE)
+        return _webp(sorted(Path(folder).glob("*.png")), (shape.width, shape.height), 1000 * every // RATE)
 
 
-def _webp(files: list[Path], milliseconds: int) -> bytes:
-    first, *rest = (Image.open(file).convert("RGB").resize(SIZE, Image.Resampling.LANCZOS) for file in files)
-    with tempfile.NamedTemporaryFile(suffix=".webp") as made:
+def _webp(files: list[Path], size: tuple[int, int], milliseconds: int) -> bytes:
+    first, *rest = (Image.open(file).convert("RGB").resize(size, Image.Resampling.LANCZOS) for file in files)
+    content = b""
+    for quality in QUALITIES:
+        buffer = io.BytesIO()
         first.save(
-            made.name, save_all=True, append_images=rest, duration=milliseconds, loop=0, quality=QUALITY, method=6,
+            buffer, "WEBP", save_all=True, append_images=rest, duration=milliseconds, loop=0, quality=quality, method=6,
             minimize_size=True,
         )  # fmt: skip
-        return Path(made.name).read_bytes()
+        content = buffer.getvalue()
+        if len(content) <= LARGEST:
+            break
+    return content
 
 
 def _motion(crank: float) -> bytes:
@@ -187,11 +223,13 @@ def _extent(skeleton: dict[str, Any]) -> tuple[list[float], list[float]]:
 
 
 def main(words: Sequence[str]) -> None:
-    """Write docs/readme_loop.webp."""
+    """Write the loops."""
     parser = argparse.ArgumentParser(prog="python -m tools.documents readme-loop", description="The loop of README.md.")
     parser.add_argument("--every", type=int, default=1, help="film every so many frames alone, to look at it sooner")
-    parser.add_argument("--to", type=Path, default=TARGET, help="the file; docs/readme_loop.webp if not given")
+    parser.add_argument("--to", type=Path, default=DOCS, help="their folder; docs/ if not given")
     arguments = parser.parse_args(words)
-    content = film(arguments.every)
-    write_bytes(arguments.to, content)
-    say("readme", f"{arguments.to}: {len(content) / 1e6:.2f} MB")
+    for shape in SHAPES:
+        content = film(shape, arguments.every)
+        target = arguments.to / shape.target.name
+        write_bytes(target, content)
+        say("readme", f"{target}: {len(content) / 1e6:.2f} MB")

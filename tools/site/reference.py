@@ -22,7 +22,7 @@ from shared.stage.paths import ROOT
 ROOMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "mechanism.md": ("Mechanism", ("mbsd.mechanism",)),
     "elements.md": ("Bodies, joints, forces", ("mbsd.model.body", "mbsd.model.joint", "mbsd.model.force")),
-    "laws.md": ("Laws and curves", ("mbsd.model.laws",)),
+    "laws.md": ("Laws, curves and outlines", ("mbsd.model.laws", "mbsd.model.outlines")),
     "gas.md": ("Gas of engines", ("mbsd.model.cylinders",)),
     "events.md": ("Events", ("mbsd.model.event", "mbsd.dynamics")),
     "results.md": ("Results", ("mbsd.results", "mbsd.analyses", "mbsd.kinematics")),

@@ -80,7 +80,7 @@ def _values(dyn, scratch, contacts, y, forces):
             contacts.vector[arrays.VALUE, k] = along(dyn, scratch, row, y[1])
         else:
             contacts.vector[arrays.VALUE, k] = scratch.ws.phi[row]
-    end_at_corners(scratch, contacts)
+    end_at_corners(dyn, scratch, contacts)
     for w in range(friction.gap.shape[0]):
         row = contacts.place[count + w, arrays.ROW]
         if contacts.number[count + w, arrays.CLOSED] > 0.0:

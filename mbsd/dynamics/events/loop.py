@@ -85,7 +85,7 @@ def _find_reached(dyn, contacts, state):
 def _begin(dyn, scratch, contacts, state):
     """Close contacts at the start and resolve velocities that they forbid; False if that is impossible."""
     contacts.clock[arrays.BEGUN] = arrays.BEGUN_NOW
-    forget_pairs(scratch, contacts)
+    forget_pairs(dyn, scratch, contacts)
     measure(dyn, scratch, state.clock[TIME], state.y[0])
     for k in range(contacts.place.shape[0]):
         contacts.number[k, arrays.CLOSED] = 0.0

@@ -12,6 +12,7 @@ so that a pawl falls off the tip of a tooth at its exact time. The row opens the
 
 from __future__ import annotations
 
+from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import internal
 from mbsd.dynamics.events import arrays
 from mbsd.dynamics.events.rows import read_gaps
@@ -24,7 +25,7 @@ what there is not."""
 
 
 @internal
-def forget_pairs(scratch, contacts):
+def _forget_pairs(dyn, scratch, contacts):
     """Let no row keep a pair."""
     for o in range(contacts.outlines.shape[0]):
         _keep(scratch, contacts, o, 0.0)
@@ -55,7 +56,7 @@ def _keep(scratch, contacts, o, codes):
 
 
 @internal
-def end_at_corners(scratch, contacts):
+def _end_at_corners(dyn, scratch, contacts):
     """Lower vector[VALUE] of closed rows to their room, at the pose that was measured."""
     for o in range(contacts.outlines.shape[0]):
         k = contacts.outlines[o, GAP_ROW]
@@ -63,3 +64,7 @@ def end_at_corners(scratch, contacts):
             room = scratch.ws.relative[contacts.outlines[o, RELATIVE], ROOM]
             room *= contacts.number[k, arrays.SCALE] * contacts.clock[arrays.LOAD]
             contacts.vector[arrays.VALUE, k] = min(contacts.vector[arrays.VALUE, k], room)
+
+
+forget_pairs = alternatives({}, _forget_pairs)
+end_at_corners = alternatives({}, _end_at_corners)

@@ -92,10 +92,10 @@ def _free_bodies(packed: Packed, jac: np.ndarray, q: np.ndarray) -> tuple[str, .
 
     At a dead centre a slider rests.
     """
-    moving = {*_moving(packed, jac)}
+    moving = {*moving_bodies(packed, jac)}
     if len(moving) + len(_fastened(packed)) < len(packed.body_names):
         for near in _nearby(packed, q):
-            moving.update(_moving(packed, scaled_jacobian(packed, near)[: packed.driver_rows]))
+            moving.update(moving_bodies(packed, scaled_jacobian(packed, near)[: packed.driver_rows]))
     return tuple(name for name in packed.body_names if name in moving)
 
 
@@ -118,7 +118,7 @@ def refuse_overdriven(m: Model, packed: Packed, time: float) -> None:
     q, worst = close(packed, rough_pose(m, packed, none, 0), none, packed.driver_rows)
     take_phases(packed, q, none)
     if worst <= CLOSED:
-        _refuse_idle_drivers(packed, joint_mobility(packed, q), _best_rows(packed, q)[1], time)
+        refuse_idle_drivers(packed, joint_mobility(packed, q), _best_rows(packed, q)[1], time)
 
 
 def choose_rows(packed: Packed, q: np.ndarray, time: float, joints: Mobility) -> np.ndarray:
@@ -138,10 +138,10 @@ def choose_rows(packed: Packed, q: np.ndarray, time: float, joints: Mobility) ->
 
 def _chosen(packed: Packed, q: np.ndarray, time: float, joints: Mobility) -> list[int]:
     here, kept, best = _best_rows(packed, q)
-    _refuse_idle_drivers(packed, joints, kept, time)
+    refuse_idle_drivers(packed, joints, kept, time)
     if len(kept) < packed.coordinates:
         missing = packed.coordinates - len(kept)
-        free = _moving(packed, scaled_jacobian(packed, best))
+        free = moving_bodies(packed, scaled_jacobian(packed, best))
         raise MobilityError(
             f"{packed.name}: at t = {time:.6g} s {missing} of {counted(joints.dof, 'degree')} of freedom "
             f"{'is' if missing == 1 else 'are'} not driven: {', '.join(free)} can still move. "
@@ -202,7 +202,8 @@ def _best_rows(packed: Packed, q: np.ndarray) -> tuple[list[int], list[int], np.
     return ranked[0], ranked[best], poses[best]
 
 
-def _refuse_idle_drivers(packed: Packed, joints: Mobility, kept: list[int], time: float) -> None:
+def refuse_idle_drivers(packed: Packed, joints: Mobility, kept: list[int], time: float) -> None:
+    """Raise MobilityError where a driver's row is not among ``kept``, the independent ones."""
     drivers = packed.drivers
     idle = [d for k, d in enumerate(drivers) if packed.driver_rows + k not in set(kept)]
     if not idle:
@@ -237,23 +238,23 @@ def _nearby(packed: Packed, q: np.ndarray, tries: int = 3, seed: int = 1) -> lis
     return poses
 
 
-def _moving(packed: Packed, jac: np.ndarray) -> tuple[str, ...]:
-    """Return bodies that the null space of J moves."""
-    size = _kept_motion(jac.tobytes(), jac.shape) if jac.size <= SMALL else _motion(jac)
+def moving_bodies(packed: Packed, jac: np.ndarray, each: int = 3) -> tuple[str, ...]:
+    """Return bodies that the null space of J moves; a body has ``each`` columns."""
+    size = _kept_motion(jac.tobytes(), jac.shape, each) if jac.size <= SMALL else _motion(jac, each)
     return tuple(name for name, moved in zip(packed.body_names[1:], size, strict=True) if moved > 1e-6)
 
 
 @lru_cache(maxsize=64)
-def _kept_motion(numbers: bytes, shape: tuple[int, int]) -> np.ndarray:
-    return _motion(np.frombuffer(numbers).reshape(shape).copy())
+def _kept_motion(numbers: bytes, shape: tuple[int, int], each: int) -> np.ndarray:
+    return _motion(np.frombuffer(numbers).reshape(shape).copy(), each)
 
 
-def _motion(jac: np.ndarray) -> np.ndarray:
+def _motion(jac: np.ndarray, each: int) -> np.ndarray:
     """Return (bodies,) largest number of each body in unit vectors that span the null space of J."""
     _, singular, v = np.linalg.svd(jac, full_matrices=True)
     rank = int((singular > RANK_TOLERANCE * max(1.0, singular.max(initial=0.0))).sum())
     null = v[rank:]
-    return np.linalg.norm(null, axis=0).reshape(-1, 3).max(axis=1)
+    return np.linalg.norm(null, axis=0).reshape(-1, each).max(axis=1)
 
 
 def _of_play(packed: Packed) -> str:

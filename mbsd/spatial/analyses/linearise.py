@@ -10,6 +10,14 @@ wheels turn, because its round bodies look the same after any turn. What the joi
 
 and A = N^+ A_x N. About an equilibrium d and u have one null space Z, and motions that neither stiffness nor damping
 resist are the free rigid ones: they are split off and have the eigenvalue 0 exactly, twice.
+
+Modes are eigenvalues of A, and how every body moves:
+
+    lambda = -zeta omega +- i omega sqrt(1 - zeta^2)        omega = |lambda|
+
+A pair of conjugate eigenvalues is one mode, and a real one a mode of its own; a free rigid motion has frequency 0. A
+mode moves every body by Re(amplitude shape e^(lambda t)), scaled so that the largest displacement of a frame, or turn
+times the mechanism's size, is 1 and real. Source: Meirovitch, Fundamentals of Vibrations, ch. 7.
 """
 
 from __future__ import annotations
@@ -17,15 +25,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from mbsd.analyses.modes import Mode
 from mbsd.base.errors import MobilityError
 from mbsd.base.names import Suggesting
 from mbsd.dynamics.formulation import derivative
 from mbsd.kinematics.pose.held_values import RANK_TOLERANCE
 from mbsd.spatial.analyses.equilibrium import Equilibrium
-from mbsd.spatial.analyses.modes import Mode, modes_of
 from mbsd.spatial.arrays.packing import Packed, moved
 from mbsd.spatial.dynamics.simulate import Run
 from mbsd.spatial.model.mechanism import Model
@@ -33,6 +42,8 @@ from mbsd.spatial.model.rotation import rotation_matrix
 
 STEP = 2e-3
 """Deviation of differences, in sizes and rad."""
+REAL = 1e-9
+"""Part of an eigenvalue or shape below which its imaginary part is rounding."""
 STENCIL = {1: 3 / 4, 2: -3 / 20, 3: 1 / 60}
 
 
@@ -162,3 +173,37 @@ def _null_space(matrix: np.ndarray) -> np.ndarray:
 def _refuse_fixed(packed: Packed, free: np.ndarray) -> None:
     if not free.shape[1]:
         raise MobilityError(f"{packed.name}: nothing can move: joints and drivers fix all bodies. Release a driver")
+
+
+def modes_of(linear: Linearisation) -> tuple[Mode, ...]:
+    """Return all modes by rising frequency: free rigid motions, then one for each pair or real eigenvalue."""
+    free, half = 2 * linear.rigid, len(linear.deviations) // 2
+    values, vectors = np.linalg.eig(linear.a[free:, free:])
+    pairs = [(0.0 + 0.0j, linear.deviations[:half, k]) for k in range(linear.rigid)]
+    for value, vector in zip(values, vectors.T, strict=True):
+        if value.imag < -REAL * abs(value):
+            continue
+        # rigid entries follow: x_r'' = A_r x, so x_r = A_r x / lambda^2
+        whole = np.zeros(len(linear.a), complex)
+        whole[free:] = vector
+        if linear.rigid and value != 0.0:
+            drift = linear.a[linear.rigid : free, free:] @ vector
+            whole[: linear.rigid] = drift / value**2
+        pairs.append((complex(value), linear.deviations[:half] @ whole))
+    pairs.sort(key=lambda mode: abs(mode[0]))
+    return tuple(Mode(value, _shape(linear, way), {}) for value, way in pairs)
+
+
+def _shape(linear: Linearisation, way: np.ndarray) -> dict[str, np.ndarray]:
+    """Return place and rotation vector (6,) of each body's frame in a deviation (6 n,) of centres of mass."""
+    packed, shape = linear.packed, dict[str, Any]()
+    for b, body in enumerate(packed.bodies[1:], 1):
+        moved = np.array(way[6 * b - 6 : 6 * b])
+        turned = rotation_matrix(linear.q[7 * b - 1 : 7 * b + 3])
+        arm = turned @ (body.principal[1].T @ -np.array(body.com))
+        moved[:3] += np.cross(moved[3:], arm)
+        shape[body.name] = moved
+    sized = np.array([part / np.repeat([1.0, 1.0 / packed.size], 3) for part in shape.values()]).ravel()
+    largest = sized[int(np.argmax(np.abs(sized)))]
+    out = {name: part / largest for name, part in shape.items()} if largest != 0.0 else shape
+    return {name: part.real if np.abs(part.imag).max(initial=0.0) < REAL else part for name, part in out.items()}

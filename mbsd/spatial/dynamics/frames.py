@@ -14,6 +14,7 @@ from collections import namedtuple
 
 from mbsd.compiling.jit import inlined, internal
 from mbsd.dynamics.events.loop import decide
+from mbsd.dynamics.events.outlines import end_at_corners, forget_pairs
 from mbsd.dynamics.events.users import WHOLE, Events, move_frames, read_frames
 from mbsd.spatial.dynamics.formulation import SpaceDynamics
 
@@ -99,6 +100,13 @@ def _decide_nothing(dyn, scratch, contacts, state, met):
     return True
 
 
+@inlined
+def _without_outlines(dyn, scratch, contacts):
+    pass
+
+
 decide.add(SpaceDynamics, _decide_nothing)
+end_at_corners.add(SpaceDynamics, _without_outlines)
+forget_pairs.add(SpaceDynamics, _without_outlines)
 read_frames.add(SpaceEvents, _read_frames)
 move_frames.add(SpaceEvents, _move_frames)

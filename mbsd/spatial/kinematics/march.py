@@ -10,13 +10,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from mbsd.base.errors import AssemblyError, BranchError, SingularPoseError
-from mbsd.base.quantity import written
+from mbsd.base.errors import AssemblyError
 from mbsd.kinematics.change_points import assemblies
 from mbsd.kinematics.change_points.passages import Passage
 from mbsd.kinematics.elimination import Elimination, Factors
-from mbsd.kinematics.march import REDUNDANT_GAP, RUNAWAY, driver_values
-from mbsd.kinematics.newton import BRANCH_DOUBT, DONE
+from mbsd.kinematics.march import REDUNDANT_GAP, error_of_step
+from mbsd.kinematics.newton import DONE
 from mbsd.kinematics.newton_march import NewtonMarch
 from mbsd.kinematics.steps import Steps
 from mbsd.spatial.arrays.along import tabulated
@@ -55,14 +54,16 @@ def motion_of(
 class SpaceSolver(assemblies.Solver):
     """Newton-Raphson along ways of the drivers past a change point."""
 
-    def __init__(self, march: SpaceMarch, sequence: Elimination, factors: Factors) -> None:
-        super().__init__(march.ready.packed, sequence, factors)
-        self._march = march
-        self._turns = march.ready.turns
+    def __init__(self, ready: Prepared, arrays: dict[str, np.ndarray], sequence: Elimination, factors: Factors) -> None:
+        """``arrays``: those of the march, whose turns are counted on."""
+        same_fields: Any = ready.packed
+        super().__init__(same_fields, sequence, factors)
+        self._ready, self._arrays = ready, arrays
+        self._turns = ready.turns
 
     def start_from(self, row: int) -> None:
         """Count turns from those of a step."""
-        self._turns = self._march.arrays["turn"][row].copy()
+        self._turns = self._arrays["turn"][row].copy()
 
     def exchanged(self, q: np.ndarray, drive: np.ndarray) -> SpaceSolver | None:
         """Return a solver with rows that are further from dependent at a pose q (3 + 7 n,); None if there are none."""
@@ -70,7 +71,7 @@ class SpaceSolver(assemblies.Solver):
         packed: Any = self.packed
         packed.ws.guess[:] = self._turns
         kept = better_rows_at(packed, q, self.sequence.rows.astype(np.int64))
-        return None if kept is None else SpaceSolver(self._march, *planned(packed, kept))
+        return None if kept is None else SpaceSolver(self._ready, self._arrays, *planned(packed, kept))
 
     def walk(self, way: assemblies.Way, pose: np.ndarray, p: np.ndarray) -> tuple[np.ndarray, ...] | None:
         """Return q, dq/dp, d2q/dp2 (P, 3 + 7 n) and determinants (P, d); see the plane."""
@@ -83,7 +84,7 @@ class SpaceSolver(assemblies.Solver):
         unguarded = len(p) - 1
         status, _ = newton.sweep(
             packed.system,
-            self._march.ready.laws,
+            self._ready.laws,
             self.sequence,
             self.factors,
             packed.ws,
@@ -133,7 +134,7 @@ class SpaceMarch(NewtonMarch):
 
     def solver(self) -> SpaceSolver:
         """Return Newton-Raphson with the rows in use, for passages."""
-        return SpaceSolver(self, self.sequence, self.factors)
+        return SpaceSolver(self.ready, self.arrays, self.sequence, self.factors)
 
     def motion(self) -> newton.DrivenMotion:
         """Return the motion as kernels read it."""
@@ -163,7 +164,14 @@ class SpaceMarch(NewtonMarch):
 
     def error_of_step(self, status: int, index: int) -> Exception:
         """Return the error for a refused step that nothing cures."""
-        return error_of_step(self.packed, status, self.motion(), index)
+        steps, v = self.steps, self.arrays["v"]
+        rates = np.linalg.norm(v[:, 3:].reshape(len(v), -1, 6)[..., 3:], axis=-1)
+        same_fields: Any = self.packed
+
+        def weak(row: int) -> str:
+            return f" at {weakest_joints(self.packed, self.arrays['q'][row])}"
+
+        return error_of_step(same_fields, status, steps.times, index, steps.drives, rates, weak, "joint")
 
     def complete(self, rows: np.ndarray) -> None:
         """Fill velocities, accelerations and turns at ``rows`` (R,), whose coordinates are those of a passage."""
@@ -199,13 +207,15 @@ class SpaceMarch(NewtonMarch):
 
     def _complete(self, arrays: dict[str, np.ndarray], times: np.ndarray, drives: np.ndarray, rows: np.ndarray) -> None:
         """Fill velocities, accelerations and turns at rising ``rows`` (R,) from coordinates."""
-        poses = [arrays[name][rows, 3:].reshape(len(rows), -1, 7) for name in self.poses]
+        poses = [arrays[name][rows, 3:].reshape(len(rows), len(self.packed.bodies) - 1, 7) for name in self.poses]
         poses[0][..., 3:] /= np.linalg.norm(poses[0][..., 3:], axis=-1, keepdims=True)
-        arrays["q"][rows, 3:] = poses[0].reshape(len(rows), -1)
+        arrays["q"][rows, 3:] = poses[0].reshape(len(rows), len(self.packed.design) - 3)
         inverse = poses[0][..., 3:] * CONJUGATE
         for name, part in zip(("v", "a"), poses[1:], strict=True):
             turning = 2.0 * product(part[..., 3:], inverse)[..., 1:]
-            arrays[name][rows, 3:] = np.concatenate([part[..., :3], turning], axis=-1).reshape(len(rows), -1)
+            arrays[name][rows, 3:] = np.concatenate([part[..., :3], turning], axis=-1).reshape(
+                len(rows), self.packed.freedoms
+            )
         ws, q, v, turn, rate = self.packed.ws, *(arrays[name] for name in ("q", "v", "turn", "turn_rate"))
         for k in rows if turn.shape[1] else ():
             guess = turn[k - 1] + (times[k] - times[k - 1]) * rate[k - 1] if k else turn[0]
@@ -225,38 +235,6 @@ def refuse_disagreeing(packed: Packed, motion: newton.DrivenMotion) -> None:
         f"{packed.name}: at t = {motion.times[k]:.6g} s redundant joint '{packed.joints[joint].name}' is open by "
         f"{gap_in_words(packed, joint, phi)} while the others close: places or axes do not agree. Give axes with all "
         "their digits, or use a spherical or cylindrical joint instead."
-    )
-
-
-def error_of_step(packed: Packed, status: int, motion: newton.DrivenMotion, index: int) -> Exception:
-    """Return the error for a step that dividing does not cure."""
-    last = max(index - 1, 0)
-    same_fields: Any = packed
-    where = f"t = {motion.times[last]:.6g} s ({driver_values(same_fields, motion.drives[last])})"
-    if index == 0:
-        return SingularPoseError(
-            f"{packed.name}: the start pose at {where} is singular: the drivers do not fix the motion here. Start a "
-            "little before or after it with start_near, or drive another joint."
-        )
-    rates = np.linalg.norm(motion.v[: last + 1, 3:].reshape(last + 1, -1, 6)[..., 3:], axis=-1)
-    fastest = [packed.body_names[1 + b] for b in np.argsort(-rates[last])[:2]]
-    usual = float(np.median(rates.max(axis=1)))
-    weak = weakest_joints(packed, motion.q[last])
-    if rates[last].max() > RUNAWAY * usual:
-        return SingularPoseError(
-            f"{packed.name}: the bodies cannot follow the drivers beyond {where}: a toggle at {weak}, where "
-            f"{', '.join(fastest)} run away ({written(float(rates[last].max()), 'rad/s')}, {written(usual, 'rad/s')} "
-            "before). Drive within reach, change the lengths, or drive another joint."
-        )
-    if status == BRANCH_DOUBT:
-        return BranchError(
-            f"{packed.name}: after {where} the motion would jump to another assembly at {weak}, and steps down to "
-            f"{motion.times[index] - motion.times[last]:.1e} s do not cure it. A law jumps there, or two assemblies "
-            "meet; end the motion before it."
-        )
-    return SingularPoseError(
-        f"{packed.name}: the pose at {where} is singular at {weak}: the drivers do not decide how the bodies go on. "
-        "End the motion before it, or add a joint that decides."
     )
 
 

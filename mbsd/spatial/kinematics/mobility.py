@@ -8,12 +8,14 @@ The rank at one pose may be low by accident, so it is also taken at closed poses
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from mbsd.base.errors import MobilityError, ModelError, SingularPoseError
 from mbsd.base.quantity import counted
-from mbsd.kinematics.pose.held_values import RANK_TOLERANCE, independent_rows
-from mbsd.kinematics.pose.mobility import better_rows
+from mbsd.kinematics.pose.held_values import independent_rows
+from mbsd.kinematics.pose.mobility import better_rows, moving_bodies, refuse_idle_drivers
 from mbsd.results.views import Mobility
 from mbsd.spatial.arrays.packing import Packed, moved
 from mbsd.spatial.kinematics.close import CLOSED, close
@@ -34,6 +36,7 @@ def joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:
             independent = independent_rows(jac)
             if len(independent) > len(kept):
                 kept, best = independent, jac
+    same_fields: Any = packed
     dropped = [row for row in range(rows) if row not in set(kept)]
     free = packed.freedoms - len(kept)
     return Mobility(
@@ -42,7 +45,7 @@ def joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:
         redundant_rows=len(dropped),
         redundant=tuple(dict.fromkeys(packed.joints[packed.row_joint[row]].name for row in dropped)),
         singular=start < len(kept),
-        free_bodies=tuple(_moving(packed, best)) if free else (),
+        free_bodies=moving_bodies(same_fields, best, 6) if free else (),
     )
 
 
@@ -71,7 +74,8 @@ def choose_rows(packed: Packed, q: np.ndarray, time: float, joints: Mobility) ->
             independent = independent_rows(matrix)
             if len(independent) > len(kept):
                 kept, best = independent, matrix
-    _refuse_idle(packed, kept, joints, time)
+    same_fields: Any = packed
+    refuse_idle_drivers(same_fields, joints, kept, time)
     if len(kept) < packed.freedoms:
         raise MobilityError(_undriven(packed, best, packed.freedoms - len(kept), joints, time))
     if here < len(kept):
@@ -96,20 +100,6 @@ def _singular_joints(packed: Packed, jac: np.ndarray) -> str:
     return ", ".join(f"'{packed.joints[k].name}'" for k in strongest if weights[k] > 0.1)
 
 
-def _refuse_idle(packed: Packed, kept: list[int], joints: Mobility, time: float) -> None:
-    drivers = packed.drivers
-    idle = [d for k, d in enumerate(drivers) if packed.driver_rows + k not in set(kept)]
-    if not idle:
-        return
-    others = [f"'{d.name}'" for d in drivers if d not in idle]
-    fixed = "the joints" + (f" and driver{'s' * (len(others) > 1)} {', '.join(others)}" if others else "")
-    raise MobilityError(
-        f"{packed.name}: at t = {time:.6g} s driver '{idle[0].name}' drives a freedom that {fixed} already fix: "
-        f"{counted(joints.dof, 'degree')} of freedom, {counted(len(drivers), 'driver')}. "
-        "Remove one driver or free a joint."
-    )
-
-
 def _undriven(packed: Packed, jac: np.ndarray, missing: int, joints: Mobility, time: float) -> str:
     """Return the error text for freedoms that nothing drives."""
     floating = floating_bodies(packed)
@@ -120,9 +110,11 @@ def _undriven(packed: Packed, jac: np.ndarray, missing: int, joints: Mobility, t
             f"{packed.name}: no joint leads from ground to {names}: {said}, and no driver moves what floats. "
             "Add a joint, or leave it out."
         )
+    same_fields: Any = packed
+    moving = ", ".join(moving_bodies(same_fields, jac, 6))
     return (
         f"{packed.name}: at t = {time:.6g} s {missing} of {counted(joints.dof, 'degree')} of freedom "
-        f"{'is' if missing == 1 else 'are'} not driven: {', '.join(_moving(packed, jac))} can still move. "
+        f"{'is' if missing == 1 else 'are'} not driven: {moving} can still move. "
         f"Add {'a driver' if missing == 1 else f'{missing} drivers'}, for example m.drive_turn(...)."
     )
 
@@ -150,11 +142,3 @@ def _nearby(packed: Packed, q: np.ndarray, tries: int = 3) -> list[np.ndarray]:
             poses.append(pose)
     packed.measured(q)
     return poses
-
-
-def _moving(packed: Packed, jac: np.ndarray) -> list[str]:
-    """Return bodies that the null space of J moves."""
-    _, singular, v = np.linalg.svd(jac, full_matrices=True)
-    rank = int((singular > RANK_TOLERANCE * max(1.0, singular.max(initial=0.0))).sum())
-    size = np.linalg.norm(v[rank:], axis=0).reshape(-1, 6).max(axis=1)
-    return [name for name, way in zip(packed.body_names[1:], size, strict=True) if way > 1e-6]

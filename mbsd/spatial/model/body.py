@@ -13,7 +13,7 @@ import numpy as np
 from mbsd.base.arguments import CHECKS, SMALLEST, not_negative_number, number_array, several_numbers
 from mbsd.base.errors import ModelError
 from mbsd.base.names import Suggesting, shown
-from mbsd.spatial.model.rotation import PARALLEL, angle_between, frame, rotation_matrix
+from mbsd.spatial.model.rotation import PARALLEL, angle_between, euler_parameters, frame, rotation_matrix
 
 Place = Sequence[float] | np.ndarray
 """Three numbers (m)."""
@@ -216,3 +216,26 @@ Fixing = Body | Marker | str
 """A body, its name, or a marker on it."""
 
 CHECKS.update({"Place": place_given, "Direction": direction_given, "Orientation": orientation_given})
+
+
+def cylinder(mass: float, radius: float, length: float) -> tuple[float, float, float]:
+    """Return the moments of a solid cylinder: a rod at radius 0, a thin disc at length 0."""
+    cross = mass * (3.0 * radius**2 + length**2) / 12.0
+    return 0.5 * mass * radius**2, cross, cross
+
+
+def cylinder_mass(density: float, radius: float, length: float) -> float:
+    """Return the mass of a solid cylinder (kg)."""
+    return density * math.pi * radius**2 * length
+
+
+def ball(mass: float, radius: float) -> tuple[float, float, float]:
+    """Return the moments of a solid ball."""
+    moment = 0.4 * mass * radius**2
+    return moment, moment, moment
+
+
+def along_x(axis: np.ndarray) -> tuple[float, ...]:
+    """Return Euler parameters of a frame whose x axis is the unit ``axis`` (3,)."""
+    axes = frame(axis)
+    return tuple(euler_parameters(np.column_stack([axis, axes[:, 0], axes[:, 1]])).tolist())

@@ -23,6 +23,10 @@ from mbsd.spatial.model.body import (
     Orientation,
     Place,
     Shape,
+    along_x,
+    ball,
+    cylinder,
+    cylinder_mass,
     direction_given,
     inertia_given,
     mass_given,
@@ -31,7 +35,6 @@ from mbsd.spatial.model.body import (
 )
 from mbsd.spatial.model.force import Force
 from mbsd.spatial.model.joint import Joint
-from mbsd.spatial.model.solids import along_x, ball, cylinder, cylinder_mass
 
 STANDARD_GRAVITY = (0.0, 0.0, -9.80665)
 """m/s^2, ISO 80000-3."""

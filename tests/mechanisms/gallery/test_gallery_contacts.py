@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -13,6 +15,8 @@ from scipy.optimize import brentq
 from mbsd.results.solution import Solution
 from mechanisms.cam_follower import mechanism as cam
 from mechanisms.cam_follower_angular import mechanism as angular
+from mechanisms.cycloidal_drive import mechanism as cycloidal
+from mechanisms.escapement import mechanism as escapement
 from mechanisms.quarter_car import mechanism as car
 from mechanisms.reflective_wall import mechanism as wall
 from mechanisms.terrain_wheel import mechanism as terrain
@@ -229,3 +233,82 @@ def test_arm_on_a_cam_swings_as_its_law_says_and_is_never_pulled(variant: dict[s
     power = p.mass * p.tip**2 / 3 * second * rate + pulled + p.mass * 9.80665 * moves[:, 1] / 2
     np.testing.assert_allclose(sol.driver("motor").torque * p.speed, power, atol=1e-6 * np.abs(power).max())
     assert sol.joint("contact").fy.min() > 0
+
+
+def _beats(p: escapement.Params, duration: float) -> list[float]:
+    """Times at which teeth drop on pallets: free fall of the wheel, free swing, free fall, an impact, a push."""
+    far, pitch = p.far, 2 * math.pi / p.teeth
+    inverse = np.array([1 / (p.bob * escapement.LENGTH**2 + 4e-4), 1 / 4e-5])  # of the inertias of pendulum and wheel
+    pallets = [np.array([[z.real, z.imag] for z in escapement.pallet(p, side)[1:3]]) for side in (-1, 1)]
+    t, y, hits = 0.0, np.array([math.radians(6), 0, math.radians(-90 + 180 / p.teeth * (p.between + 1)), 0]), []
+
+    def accelerations(y: np.ndarray) -> np.ndarray:
+        weight = -p.bob * 9.81 * escapement.LENGTH * math.sin(y[0])
+        return inverse * np.array([weight - escapement.AIR * y[1], -p.torque])
+
+    def tip(y: np.ndarray, tooth: float) -> np.ndarray:
+        """Place of a tip in the pendulum's axes, and its changes by both angles."""
+        c, s, w = math.cos(y[0]), math.sin(y[0]), y[2] + tooth
+        place = np.array([[c, s], [-s, c]]) @ [p.radius * math.cos(w), far + p.radius * math.sin(w)]
+        along = p.radius * np.array([-math.sin(w - y[0]), math.cos(w - y[0])])
+        return np.array([place, [place[1], -place[0]], along])
+
+    def run(forces: Callable[[np.ndarray], np.ndarray], guard: Callable[[np.ndarray], float]) -> None:
+        nonlocal t, y
+
+        def rate(_: float, y: np.ndarray) -> np.ndarray:
+            a, w = forces(y)
+            return np.array([y[1], a, y[3], w])
+
+        def crossing(time: float, y: np.ndarray) -> float:
+            return guard(y) if time > t + 1e-6 else start
+
+        start = guard(y + 1e-6 * rate(t, y))
+        crossing.terminal = True  # pyright: ignore[reportFunctionMemberAccess]
+        found = solve_ivp(rate, (t, t + 5), y, rtol=1e-11, atol=1e-13, events=crossing, method="DOP853")
+        t, y = found.t[-1], found.y[:, -1]
+
+    def beat(first: np.ndarray, last: np.ndarray) -> None:
+        """Go on to where a tooth drops on the pallet that locks at ``first``, and until it leaves it at ``last``."""
+        tooth = min(pitch * np.arange(p.teeth), key=lambda angle: math.dist(tip(y, angle)[0], first))
+        way = (last - first) / math.dist(last, first)
+        normal = np.array([way[1], -way[0]])
+        run(accelerations, lambda y: math.hypot(*tip(y, tooth)[0]) - math.hypot(*first))
+        hits.append(t)
+        y[3] = 0.0
+        run(lambda y: accelerations(y) * [1, 0], lambda y: float(first @ tip(y, tooth)[1]))
+        run(accelerations, lambda y: float(normal @ (tip(y, tooth)[0] - first)))
+        across = tip(y, tooth)[1:] @ normal
+        y[1::2] -= inverse * across * (across @ y[1::2]) / (across @ (inverse * across))
+
+        def pushed(y: np.ndarray) -> np.ndarray:
+            across, step = tip(y, tooth)[1:] @ normal, 1e-6 * np.array([y[1], 0, y[3], 0])
+            bend = (tip(y + step, tooth) - tip(y - step, tooth))[1:] @ normal @ y[1::2] / 2e-6
+            free = accelerations(y)
+            return free - inverse * across * (across @ free + bend) / (across @ (inverse * across))
+
+        run(pushed, lambda y: float(way @ (tip(y, tooth)[0] - last)))
+
+    for pallet in cycle(pallets):
+        if t > duration:
+            return hits
+        beat(*pallet)
+    return hits
+
+
+def test_escapement_keeps_the_time_of_its_own_equations() -> None:
+    p = escapement.Params()
+    sol = escapement.build(p).simulate(2.5, 50, tolerance=1e-9)
+    drops = [event.time for event in sol.events if event.what == "closes"]
+    np.testing.assert_allclose(drops[0::2], _beats(p, 2.5), atol=1e-7)
+
+
+def test_cycloidal_drive_turns_its_disc_back_by_a_lobe_each_turn() -> None:
+    """It lags by M / k sum r^2: half of its pins press, at levers r of e N sin(angle); arcs and pins make it uneven."""
+    p = cycloidal.Params()
+    sol = cycloidal.build(p).simulate(0.3, 30)
+    lag = sol.body("disc").theta + sol.body("crank").theta / p.lobes
+    brake = p.load * 2 * math.pi * p.rate / p.lobes
+    stiffness = cycloidal.STIFFNESS * (p.crank * p.lobes) ** 2 * (p.lobes + 1) / 4
+    assert lag[3:].mean() == pytest.approx(brake / stiffness, rel=0.2)
+    assert np.abs(lag).max() < 2 * brake / stiffness

@@ -38,14 +38,14 @@ def machine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machine]:
 
 def _number(words: str) -> float:
     """Return a number of a text in SI units, an angle in degrees."""
-    found = re.match(r"([−\d.]+)\s*(µ|m|k|M)?(m|s|N|J|W|°|%|kg|g|rad/s)?", words)
-    assert found is not None, words
-    return float(found[1].replace("−", "-")) * {"µ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6}.get(found[2] or "", 1.0)
+    match = re.match(r"([−\d.]+)\s*(µ|m|k|M)?(m|s|N|J|W|°|%|kg|g|rad/s)?", words)
+    assert match is not None, words
+    return float(match[1].replace("−", "-")) * {"µ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6}.get(match[2] or "", 1.0)
 
 
 def test_every_number_that_follows_the_machine_is_that_of_the_motion(machine: Machine) -> None:
     motion, text = machine.motion, markdown(machine, steps_of(machine))
-    links = [found.groups() for found in LINK.finditer(text)]
+    links = [link.groups() for link in LINK.finditer(text)]
     read = [(words, scheme, target.split("/")) for words, scheme, target in links if scheme in ("now", "most", "range")]
     assert {kind for _, _, (kind, *_) in read} >= {"body", "driver", "joint"}
     for words, scheme, (kind, name, series) in read:

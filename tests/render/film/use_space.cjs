@@ -3,7 +3,7 @@ const { launch, open } = require(process.env.PAGE_BROWSER);
 
 (async () => {
   const browser = await launch(), [file, times] = [process.argv[2], JSON.parse(process.argv[3])];
-  const { page, errors } = await open(browser, file, { width: 900, height: 560 });
+  const { page, errors } = await open(browser, file, { width: 360, height: 300 });
   const seen = await page.evaluate((times) => times.map((time) => {
     const { app } = window.mbsd, { parts } = app.stage.solid;
     app.store.set({ playing: false, time });

@@ -9,8 +9,8 @@ import cadquery as cq
 import numpy as np
 
 from mechanisms.stages.automatic.space import round as shapes
-from mechanisms.stages.automatic.space.ends import Line, Part, Stand
 from mechanisms.stages.automatic.space.moves import Array, Moves
+from mechanisms.stages.automatic.space.pieces import Line, Part, Stand
 from mechanisms.stages.automatic.space.round import across
 from shared.stage.errors import UserError
 
@@ -36,7 +36,8 @@ class Base:
         self.cloud, self.reach = self._swept(lines)
         low = [float((self.cloud @ up - self.reach).min())] if len(self.cloud) else []
         low += [float(place @ up) - stand.reach for stand in stands for place in (stand.ends or (stand.place,))]
-        self.top = min(low, default=0.0) - BELOW * self.sizes.rod
+        self.floor = _floor(moves, up)
+        self.top = min(low, default=0.0) - BELOW * self.sizes.rod if self.floor is None else self.floor
         """Height of the upper face of the plate along ``up``."""
 
     def parts(self) -> list[Part]:
@@ -57,12 +58,12 @@ class Base:
         """Return where a post meets the part of a joint, and how far aside (3,) it stands."""
         s, flat = self.sizes, across(self.up)
         side = np.cross(self.up, flat)
-        through = stand.is_bored and abs(stand.axis @ self.up) > 0.7
+        through = stand.bore > 0.0 and abs(stand.axis @ self.up) > 0.2  # a post would meet the shaft
         for step in STEPS:
             for turn in range(WAYS if step else 1):
                 angle = 2.0 * math.pi * turn / WAYS
                 aside = step * s.rod * (math.cos(angle) * flat + math.sin(angle) * side)
-                if stand.is_bored and step and abs(aside @ stand.axis) > 0.2 * step * s.rod:
+                if stand.bore and step and abs(aside @ stand.axis) > 0.2 * step * s.rod:
                     continue  # it would meet the collars of the shaft
                 if not step and through:
                     continue
@@ -112,7 +113,7 @@ class Base:
         """Return the plate, under all posts and most of what moves."""
         s, flat = self.sizes, across(self.up)
         side = np.cross(self.up, flat)
-        points = np.array(feet) if feet else self.cloud
+        points = np.array(feet) if feet and self.floor is None else np.array([*self.cloud, *feet])
         u, v = points @ flat, points @ side
         room = 5.0 * s.rod
         half = (float(np.ptp(u)) / 2 + room, float(np.ptp(v)) / 2 + room)
@@ -134,3 +135,21 @@ class Base:
                 clouds.append(world)
                 radii.append(np.full(len(world), radius))
         return np.concatenate(clouds), np.concatenate(radii)
+
+
+def _floor(moves: Moves, up: Array) -> float | None:
+    """Return the height along ``up`` of the level plane of ground on which bodies roll (mm); None without.
+
+    Raises UserError for a plane that is not level or not ground's, and for two heights.
+    """
+    heights: list[float] = []
+    for pair in moves.rolling():
+        height = float(moves.place(pair.plane) @ up)
+        level = pair.plane.body.name == "ground" and np.array(pair.plane.axis) @ up > 1.0 - 1e-9
+        if not level or abs(height - (heights or [height])[0]) > 1e-6 * moves.sizes.rod:
+            raise UserError(
+                f"{moves.m.name}: '{pair.name}' rolls on a plane that is not one level floor of ground, for which "
+                "there are no automatic parts; write a parts.py"
+            )
+        heights.append(height)
+    return heights[0] if heights else None

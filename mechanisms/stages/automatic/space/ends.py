@@ -1,6 +1,7 @@
-"""Ends of bodies in space: what each joint asks of its two bodies, of ground and of its own massless link.
+"""Ends of bodies in space: what joints ask of bodies, of ground and of massless links.
 
-    revolute                  eyes side by side on a pin; on ground a journal in a bearing block
+    revolute                  eyes side by side on a pin; on ground a journal in a bearing block;
+                              a fork where a shaft ends; the hub of a disc on its axle
     cylindrical, prismatic    a shaft in a block; else a bush on a rail, round or square
     universal                 two yokes and a cross, which is the joint's link
     spherical                 a ball in a cup that opens to where its neck points
@@ -13,8 +14,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from itertools import combinations
 
 import cadquery as cq
 import numpy as np
@@ -22,71 +21,27 @@ import numpy as np
 from mbsd.spatial.model.body import Marker
 from mbsd.spatial.model.joint import Joint
 from mechanisms.stages.automatic.space import round as shapes
+from mechanisms.stages.automatic.space.gears import bevel_wheels
 from mechanisms.stages.automatic.space.moves import MM, Array, Moves
+from mechanisms.stages.automatic.space.pieces import End, Link, Stand
 from mechanisms.stages.automatic.space.round import across, unit
+from mechanisms.stages.automatic.space.slides import is_telescope, telescope_ends, track_ends
+from mechanisms.stages.automatic.space.surroundings import Surroundings
+from mechanisms.stages.automatic.space.wheels import axle_ends, is_wheel, rims
 from shared.stage.errors import UserError
 
-AXIAL = 0.85
-"""Cosine to the axis of a joint above which a body runs along it."""
 WIDEST_CUP, WIDEST_RING = math.radians(62.0), math.radians(34.0)
 """Largest swing of a neck in a cup, and of a ball's stud in a ring."""
 RIM = math.radians(5.0)
 """Angle at the joint's centre between a neck that swings farthest and the rim of its cup."""
 LEAVES = 0.45
 """Cosine to the pin above which a rod leaves an eye by an elbow."""
+CLEVIS = 3.4
+"""Distance of a clevis' bridge from its pin, in rods."""
 THIN = 0.8
 """Radius of a link's rod, in rods."""
 COLLAR = 0.35
 """Half width of a collar, in rods."""
-Line = tuple[Array, Array, float]
-"""Two places and a radius (mm): a round part, for looking whether it meets others."""
-Part = tuple[str, cq.Workplane, str, int]
-"""Name, shape, material and through holes of a piece besides the main one."""
-
-
-@dataclass
-class End:
-    """End of a body at a joint, in the body's frame (mm)."""
-
-    joint: str
-    node: Array
-    """Where the body's rods arrive."""
-    adds: list[cq.Shape] = field(default_factory=list)
-    cuts: list[cq.Shape] = field(default_factory=list)
-    holes: int = 0
-    parts: list[Part] = field(default_factory=list)
-    lines: list[Line] = field(default_factory=list)
-
-
-@dataclass
-class Stand:
-    """Part that a joint asks of ground: one whose middle a post must hold."""
-
-    joint: str
-    place: Array
-    axis: Array
-    shape: Callable[[Array], tuple[cq.Workplane, int]]
-    """Function of the direction to the post: the part, and its through holes."""
-    reach: float
-    """Radius of the part about its place."""
-    material: str = "aluminium"
-    ends: tuple[Array, ...] = ()
-    """Places where posts arrive, if not at ``place``."""
-    is_bored: bool = False
-    """True if a shaft comes out of it at both sides along the axis."""
-
-
-@dataclass
-class Link:
-    """The massless link of a joint: its main piece first, in its frame (mm)."""
-
-    joint: str
-    parts: list[Part]
-    lines: list[Line]
-    body: str = "ground"
-    """Body to which its z axis is nearly fixed; its x axis goes from the first to the second place of the joint."""
-    z: Array = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
-    """Direction of this axis in the body's frame."""
 
 
 class Ends:
@@ -97,26 +52,13 @@ class Ends:
         self.ends: dict[str, list[End]] = {name: [] for name in moves.m.bodies}
         self.stands: list[Stand] = []
         self.links: list[Link] = []
-        joints = moves.joints()
-        self.anchors: dict[str, dict[str, Array]] = {name: {} for name in moves.m.bodies}
-        for joint in joints:
-            for marker in (joint.i, joint.j):
-                self.anchors[marker.body.name][joint.name] = moves.place(marker)
-        self._refuse_meeting_joints()
-        places = [moves.world(marker.body.name, moves.place(marker))[:, 0] for j in joints for marker in (j.i, j.j)]
-        self.middle = np.mean(np.concatenate(places), axis=0) if places else np.zeros(3)
-        for joint in sorted(joints, key=self._is_arm):  # arms lie in the plane of their other ends
+        self.rims, self.bevels = rims(moves), bevel_wheels(moves)
+        self.around = Surroundings(moves)
+        joints = self.around.joints
+        for joint in sorted(joints, key=self.around.is_arm):  # arms lie in the plane of their other ends
             self._shape(joint)
-
-    def _refuse_meeting_joints(self) -> None:
-        for body, anchors in self.anchors.items():
-            for (name, place), (other, another) in combinations(anchors.items(), 2):
-                if body != "ground" and np.linalg.norm(place - another) < self.sizes.rod:
-                    raise UserError(
-                        f"{self.moves.m.name}: joints '{name}' and '{other}' of '{body}' are on one place, where their "
-                        "parts would meet. Move one aside (a hinge or slide acts anywhere along its axis, a slide also "
-                        "beside it), or write a parts.py"
-                    )
+        for body, wheel in self.bevels.items():
+            self.ends[body].append(wheel.end(self.sizes))
 
     # -- joints -------------------------------------------------------------------------------------------------
 
@@ -124,7 +66,7 @@ class Ends:
         made: dict[str, Callable[[Joint], None]] = {
             "revolute": self._revolute, "cylindrical": self._sliding, "prismatic": self._sliding,
             "universal": self._universal, "spherical": self._spherical, "distance": self._rod,
-            "rod_with_fork": self._rod,
+            "rod_with_fork": self._rod, "point_on_plane": self._track,
         }  # fmt: skip
         if joint.kind.name not in made:
             raise UserError(
@@ -137,20 +79,58 @@ class Ends:
         if "ground" in joint.bodies:
             self._journal(joint)
             return
+        for wheel, holder in ((joint.i, joint.j), (joint.j, joint.i)):
+            if is_wheel(wheel):
+                rest, front, bevel = self.around.toward(holder), None, self.bevels.get(wheel.body.name)
+                if bevel is not None:  # the axle comes from behind the teeth
+                    away = wheel.body.rotation @ bevel.axis
+                    rest, front = self.moves.place(holder) + holder.body.rotation.T @ away, bevel.front()
+                both = axle_ends(joint.name, wheel, holder, rest, self.sizes, self.rims.get(wheel.body.name), front)
+                for marker, end in zip((wheel, holder), both, strict=True):
+                    self.ends[marker.body.name].append(end)
+                return
+        for shaft, other in ((joint.i, joint.j), (joint.j, joint.i)):
+            if self.around.is_shaft(shaft.body.name, joint):
+                self._clevis(joint, shaft, other)
+                return
+            if self.around.has_rest(shaft) and self.around.runs_along(shaft) and not self.around.runs_along(other):
+                self._neck(joint, shaft, other)
+                return
         side = self._nearer_side(joint)
         for marker, way in ((joint.i, 1.0), (joint.j, -1.0)):
-            arm = self._side_of_arm(marker)
+            arm = self.around.side_of_arm(marker)
             if arm:
                 side = arm * way
                 break
         for marker, way in ((joint.i, side), (joint.j, -side)):
             self._eye(joint, marker, way, pinned=marker is joint.i)
 
+    def _clevis(self, joint: Joint, shaft: Marker, other: Marker) -> None:
+        """Shape the fork in which a shaft ends, the eye between its cheeks and the pin through both."""
+        s, place, axis = self.sizes, self.moves.place(shaft), np.array(shaft.axis)
+        inner, wall, width, bridge = s.eye[1] + s.play, 0.9 * s.rod, 1.5 * s.rod, 1.2 * s.rod
+        back = across(axis, self.around.toward(shaft) - place)
+        end = End(joint.name, place + (CLEVIS * s.rod + 0.5 * bridge) * back, holes=2)
+        end.adds = shapes.yoke(place, axis, back, inner, wall, width, CLEVIS * s.rod, bridge)
+        end.cuts = [shapes.disc(place, axis, s.pin + 0.02, inner + 2 * wall)]
+        sides = [side * (inner + wall / 2) * axis for side in (1.0, -1.0)]
+        end.lines = [(place + side, place + side + CLEVIS * s.rod * back, wall / 2) for side in sides]
+        reach = inner + wall + 0.1 * s.rod
+        heads = [
+            shapes.disc(place + e * (reach + 0.2 * s.rod) * axis, axis, 1.35 * s.pin, 0.2 * s.rod) for e in (1, -1)
+        ]
+        end.parts = [("pin", shapes.fused([shapes.disc(place, axis, s.pin, reach), *heads], []), "steel", 0)]
+        self.ends[shaft.body.name].append(end)
+        place, axis = self.moves.place(other), np.array(other.axis)
+        eye = End(joint.name, place, [shapes.disc(place, axis, s.eye[0], s.eye[1])], holes=1)
+        eye.cuts = [shapes.disc(place, axis, s.pin + s.play, s.eye[1] + 0.2 * s.rod)]
+        eye.lines = [(place - s.eye[1] * axis, place + s.eye[1] * axis, s.eye[0])]
+        self.ends[other.body.name].append(eye)
+
     def _nearer_side(self, joint: Joint) -> float:
         """Return the side along a pin on which the eye of body i stands: that of the rest of its body."""
-        lean = [
-            (self._toward(marker) - self.moves.place(marker)) @ np.array(marker.axis) for marker in (joint.i, joint.j)
-        ]
+        both = (joint.i, joint.j)
+        lean = [(self.around.toward(m) - self.moves.place(m)) @ np.array(m.axis) for m in both]
         return -1.0 if lean[0] - lean[1] < -0.1 * self.sizes.rod else 1.0
 
     def _eye(self, joint: Joint, marker: Marker, way: float, pinned: bool) -> None:
@@ -161,7 +141,7 @@ class Ends:
         end = End(joint.name, middle, [shapes.disc(middle, axis, radius, half)], holes=1)
         end.cuts = [shapes.disc(middle, axis, s.pin + (0.02 if pinned else s.play), half + 0.2 * s.rod)]
         end.lines = [(middle - half * axis, middle + half * axis, radius)]
-        rest = self._toward(marker) - middle
+        rest = self.around.toward(marker) - middle
         if abs(unit(rest) @ axis) > LEAVES:  # past the head of the pin
             elbow = middle + (radius + 1.2 * s.rod) * across(axis, rest)
             end.node, end.adds = elbow, [*end.adds, shapes.rod(middle, elbow, s.rod), shapes.ball(elbow, s.rod)]
@@ -179,15 +159,15 @@ class Ends:
     def _journal(self, joint: Joint) -> None:
         """Shape a shaft in a bearing block, with collars where it does not slide."""
         s = self.sizes
-        own, ground = self._sides(joint)
+        own, ground = self.around.sides(joint)
         place, axis = self.moves.place(own), np.array(own.axis)
         fixed = MM * np.array(ground.place)
-        radius = self._shaft_radius(own)
+        radius = self.around.shaft_radius(own)
         collar, held = radius + 0.6 * s.rod, joint.kind.name == "revolute"
         far = s.block + s.play + 2 * COLLAR * s.rod
         end = End(joint.name, place)
-        if self._is_arm(joint):
-            side = self._side(joint)
+        if self.around.is_arm(joint):
+            side = self.around.side(joint)
             nodes = [(other.node - place) @ axis for other in self.ends[own.body.name]]
             offset = float(np.mean(nodes)) if nodes else 0.0
             end.node = place + offset * axis
@@ -201,13 +181,28 @@ class Ends:
             end.lines = [(boss - s.eye[1] * axis, boss + s.eye[1] * axis, s.eye[0])]
         else:
             bearing = 0.0
-            end.adds = [shapes.disc(place, axis, radius, far + 0.4 * s.rod)]
-            for way in (1.0, -1.0) if held else ():
-                at = place + way * (s.block + s.play + COLLAR * s.rod) * axis
-                end.adds.append(shapes.disc(at, axis, collar, COLLAR * s.rod))
+            end.adds = self._neck_solids(own, radius, s.block, held)
         world = np.array(ground.axis)
         self.ends[own.body.name].append(end)
         self._block(joint.name, fixed + bearing * world, world, radius + s.play)
+
+    def _neck_solids(self, marker: Marker, radius: float, half: float, held: bool) -> list[cq.Shape]:
+        """Return a shaft through a bearing of half width ``half``, with a collar at either side if it is held."""
+        s, place, axis = self.sizes, self.moves.place(marker), np.array(marker.axis)
+        out = [shapes.disc(place, axis, radius, half + s.play + (2 * COLLAR + 0.4) * s.rod)]
+        for way in (1.0, -1.0) if held else ():
+            at = place + way * (half + s.play + COLLAR * s.rod) * axis
+            out.append(shapes.disc(at, axis, radius + 0.6 * s.rod, COLLAR * s.rod))
+        return out
+
+    def _neck(self, joint: Joint, shaft: Marker, holder: Marker) -> None:
+        """Shape a body that runs along the axis as a shaft in the bush of another, as the head of a bicycle."""
+        s, place, axis = self.sizes, self.moves.place(shaft), np.array(shaft.axis)
+        radius, half = self.around.shaft_radius(shaft), 1.3 * s.block
+        way = float(np.sign((self.around.toward(shaft) - place) @ axis)) * (half + s.play + 2 * COLLAR * s.rod)
+        end = End(joint.name, place + way * axis, self._neck_solids(shaft, radius, half, True))
+        self.ends[shaft.body.name].append(end)
+        self._bush(joint, holder, half, radius, False)
 
     def _block(self, joint: str, place: Array, axis: Array, bore: float) -> None:
         s, outer = self.sizes, bore + self.sizes.wall
@@ -216,16 +211,19 @@ class Ends:
             bored = shapes.disc(place, axis, bore, s.block + s.rod)
             return shapes.fused([shapes.disc(place, axis, outer, s.block)], [bored]), 1
 
-        self.stands.append(Stand(joint, place, axis, shape, outer, is_bored=True))
+        self.stands.append(Stand(joint, place, axis, shape, outer, bore=bore))
 
     def _sliding(self, joint: Joint) -> None:
         """Shape a shaft in a block of ground, or a bush on a rail."""
-        if "ground" in joint.bodies and not self._is_arm(joint):
+        if "ground" in joint.bodies and not self.around.is_arm(joint):
             self._journal(joint)
+            return
+        if is_telescope(self.around, joint):
+            self._append(joint, *telescope_ends(self.around, joint))
             return
         s, square = self.sizes, joint.kind.name == "prismatic"
         rail, bush = joint.i, joint.j
-        if joint.j.body.name == "ground" or (self._runs_along(joint.j) and not self._runs_along(joint.i)):
+        if joint.j.body.name == "ground" or (self.around.runs_along(joint.j) and not self.around.runs_along(joint.i)):
             rail, bush = joint.j, joint.i
         place, axis = self.moves.place(rail), np.array(rail.axis)
         half = 1.3 * s.block
@@ -234,7 +232,7 @@ class Ends:
         low, high = float(way.min()) - half - 3.4 * s.rod, float(way.max()) + half + 3.4 * s.rod
         start, stop = place + low * axis, place + high * axis
         side = np.array(rail.across)
-        width = self._shaft_radius(rail) if self._runs_along(rail) else s.rod
+        width = self.around.shaft_radius(rail) if self.around.runs_along(rail) else s.rod
         solid = (
             shapes.box((start + stop) / 2, axis, side, ((high - low) / 2, width, width))
             if square
@@ -242,13 +240,13 @@ class Ends:
         )
         self._bush(joint, bush, half, width, square)
         if rail.body.name != "ground":
-            nodes = self._others(rail)
+            nodes = self.around.others(rail)
             node = (
                 min((start, stop), key=lambda end: float(np.linalg.norm(end - np.mean(nodes, axis=0))))
                 if nodes
                 else start
             )
-            node = place if self._runs_along(rail) else node
+            node = place if self.around.runs_along(rail) else node
             self.ends[rail.body.name].append(End(joint.name, node, [solid], lines=[(start, stop, width)]))
             return
         holder = 1.2 * s.rod
@@ -268,10 +266,18 @@ class Ends:
             )
         )
 
+    def _track(self, joint: Joint) -> None:
+        self._append(joint, *track_ends(self.around, joint))
+
+    def _append(self, joint: Joint, first: End | None, second: End) -> None:
+        for marker, end in ((joint.i, first), (joint.j, second)):
+            if end is not None:
+                self.ends[marker.body.name].append(end)
+
     def _bush(self, joint: Joint, marker: Marker, half: float, width: float, square: bool) -> None:
         s, place, axis = self.sizes, self.moves.place(marker), np.array(marker.axis)
         outer = width * (1.42 if square else 1.0) + s.play + s.wall
-        end = End(joint.name, place, [shapes.disc(place, axis, outer, half)], holes=1)
+        end = End(joint.name, place, [shapes.disc(place, axis, outer, half)], holes=1, bush=axis)
         gap = width + s.play
         side = np.array(marker.across)
         end.cuts = [
@@ -291,7 +297,7 @@ class Ends:
             if marker.body.name == "ground":
                 self._stand_with_yoke(joint, marker, inner, wall, width, depth, bridge)
                 continue
-            back = across(axis, self._toward(marker) - place)
+            back = across(axis, self.around.toward(marker) - place)
             end = End(joint.name, place + (depth + 0.5 * bridge) * back, holes=2)
             end.adds = shapes.yoke(place, axis, back, inner, wall, width, depth, bridge)
             end.cuts = [shapes.disc(place, axis, 0.75 * s.rod + s.play, inner + 2 * wall)]
@@ -319,9 +325,8 @@ class Ends:
         choices = []
         for ball, cup in ((joint.i, joint.j), (joint.j, joint.i)):
             if ball.body.name != "ground":
-                neck = (
-                    unit(self._toward(ball) - self.moves.place(ball)) if self._has_rest(ball) else np.array([0, 0, 1.0])
-                )
+                rest = self.around.toward(ball) - self.moves.place(ball)
+                neck = unit(rest) if self.around.has_rest(ball) else np.array([0, 0, 1.0])
                 opening, swing = self._swing(cup.body.name, self.moves.turned(ball.body.name, neck))
                 choices.append((swing, ball, cup, neck, opening))
         swing, ball, cup, neck, opening = min(choices, key=lambda choice: choice[0])
@@ -358,12 +363,12 @@ class Ends:
             self.stands.append(Stand(joint.name, place, opening, shape, s.cup))
             return
         back = place - (s.cup + 0.6 * s.rod) * opening
-        end = End(
-            joint.name, back, [shapes.ball(place, s.cup, opening), shapes.rod(place - s.ball * opening, back, s.rod)]
-        )
-        end.cuts = self._hollow(place, opening, rim)
+        whole = [shapes.ball(place, s.cup, opening), shapes.rod(place - s.ball * opening, back, s.rod)]
+        cup = shapes.fused(whole, self._hollow(place, opening, rim)).val()
+        end = End(joint.name, back, [cup])  # pyright: ignore[reportArgumentType]
+        end.cuts = [shapes.ball(place, s.ball + s.play, opening)]
         end.lines = [(place, place, s.cup), (place, back, s.rod)]
-        rest = self._toward(marker) - place if self._has_rest(marker) else -opening
+        rest = self.around.toward(marker) - place if self.around.has_rest(marker) else -opening
         if unit(rest) @ opening > -0.5:
             end.adds.append(shapes.ball(back, s.rod, opening))
         else:
@@ -424,11 +429,11 @@ class Ends:
                 f"cup, and leans by {math.degrees(lean):.0f} degrees in a ring ({math.degrees(WIDEST_RING):.0f}); "
                 "write a parts.py"
             )
-        arm = self._side_of_arm(marker, axis)
-        side = arm or (1.0 if axis @ (self._toward(marker) - place) >= 0.0 else -1.0)
+        arm = self.around.side_of_arm(marker, axis)
+        side = arm or (1.0 if axis @ (self.around.toward(marker) - place) >= 0.0 else -1.0)
         ball, ring, half, stud = s.ring
         far = ring * math.sin(lean) + half * math.cos(lean) + 0.3 * s.rod
-        rest = unit(self._toward(marker) - place - side * far * axis)
+        rest = unit(self.around.toward(marker) - place - side * far * axis)
         slope = max(-side * float(rest @ axis), 0.0)
         steep = math.sqrt(1.0 - min(slope, 0.9) ** 2)
         far += max(s.eye[1], steep * s.rod + (math.hypot(ring, half) + s.rod) * min(slope, 0.9) / steep)
@@ -437,70 +442,6 @@ class Ends:
         end.adds.append(shapes.disc(foot, axis, 1.35 * s.rod, s.eye[1]))
         end.lines = [(place, place, ball), (place, foot, stud), *shapes.tube_lines(foot, axis, 1.35 * s.rod, s.eye[1])]
         return end, axis
-
-    # -- bodies about a joint -----------------------------------------------------------------------------------
-
-    def _sides(self, joint: Joint) -> tuple[Marker, Marker]:
-        """Return the markers of a joint on the moving body and on ground."""
-        return (joint.j, joint.i) if joint.i.body.name == "ground" else (joint.i, joint.j)
-
-    def _others(self, marker: Marker) -> list[Array]:
-        """Return the places of a body's other joints, and of its disc, ball or mass where it has few."""
-        own = self.moves.place(marker)
-        body = marker.body
-        near = [p for p in self.anchors[body.name].values() if np.linalg.norm(p - own) > 0.5 * self.sizes.rod]
-        shape = body.shape
-        if shape is not None and shape.kind == "rod":
-            near += [
-                p
-                for p in (np.zeros(3), np.array([MM * shape.length, 0.0, 0.0]))
-                if np.linalg.norm(p - own) > self.sizes.rod
-            ]
-        elif shape is not None and np.linalg.norm(own) > self.sizes.rod:
-            near.append(np.zeros(3))
-        elif not near and np.linalg.norm(MM * np.array(body.com) - own) > self.sizes.rod:
-            near.append(MM * np.array(body.com))
-        return near
-
-    def _has_rest(self, marker: Marker) -> bool:
-        return bool(self._others(marker))
-
-    def _toward(self, marker: Marker) -> Array:
-        """Return the place to which a body's rod leads from a joint."""
-        others = self._others(marker)
-        return np.mean(others, axis=0) if others else self.moves.place(marker) + across(np.array(marker.axis))
-
-    def _runs_along(self, marker: Marker) -> bool:
-        """Return True if a body runs along the axis of a joint."""
-        axis, own = np.array(marker.axis), self.moves.place(marker)
-        others = self._others(marker)
-        return all(abs(unit(other - own) @ axis) > AXIAL for other in others)
-
-    def _is_arm(self, joint: Joint) -> bool:
-        """Return True if a joint with ground holds a body that stands across its axis."""
-        if "ground" not in joint.bodies or joint.kind.name not in ("revolute", "cylindrical", "prismatic"):
-            return False
-        return not self._runs_along(self._sides(joint)[0])
-
-    def _side(self, joint: Joint) -> float:
-        """Return the side along the axis on which the bearing of an arm stands: away from the mechanism's middle."""
-        ground = self._sides(joint)[1]
-        return 1.0 if (MM * np.array(ground.place) - self.middle) @ np.array(ground.axis) >= -1e-6 else -1.0
-
-    def _side_of_arm(self, marker: Marker, axis: Array | None = None) -> float:
-        """Return the side of the bearing of a body that is an arm about a parallel axis; 0 if it is none."""
-        along = np.array(marker.axis) if axis is None else axis
-        for joint in self.moves.joints():
-            if marker.body.name in joint.bodies and joint.kind.name == "revolute" and self._is_arm(joint):
-                own = np.array(self._sides(joint)[0].axis)
-                if abs(own @ along) > AXIAL:
-                    return self._side(joint) * float(np.sign(own @ along))
-        return 0.0
-
-    def _shaft_radius(self, marker: Marker) -> float:
-        shape = marker.body.shape
-        along = shape is not None and shape.kind == "rod" and abs(marker.axis[0]) > AXIAL
-        return MM * shape.radius if along and shape is not None and shape.radius > 0.0 else self.sizes.rod
 
 
 def stud_axis(moves: Moves, marker: Marker, way: Array) -> tuple[Array, float]:

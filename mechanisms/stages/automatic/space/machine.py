@@ -10,8 +10,9 @@ import numpy as np
 from mbsd.spatial.results.solution import Solution
 from mechanisms.stages.automatic.space.base import Base
 from mechanisms.stages.automatic.space.bodies import body_parts
-from mechanisms.stages.automatic.space.ends import Ends, Line, Link, Part
+from mechanisms.stages.automatic.space.ends import Ends
 from mechanisms.stages.automatic.space.moves import Array, Moves
+from mechanisms.stages.automatic.space.pieces import Line, Link, Part, gather_blocks
 from mechanisms.stages.automatic.space.round import across
 from shared.contract.parts import mounted_in_space
 from shared.shapes.bodies import Bodies
@@ -37,7 +38,7 @@ def solids_in_space(solution: Solution) -> Bodies:
     for name, body in m.bodies.items():
         shown.advance()
         if name != "ground":
-            parts, lines[name] = body_parts(body, ends.ends[name], moves.sizes, materials[name])
+            parts, lines[name] = body_parts(body, ends.ends[name], moves.sizes, materials[name], ends.rims.get(name))
             made[name] = _solids(name, parts, used)
     for link in ends.links:
         shown.advance()
@@ -46,8 +47,11 @@ def solids_in_space(solution: Solution) -> Bodies:
         moves.poses[name] = link_poses(moves, link)
         made[name] = _solids(name, link.parts, used)
         made.links[name] = (link.joint, link.body, (float(link.z[0]), float(link.z[1]), float(link.z[2])))
-    base = Base(moves, lines, ends.stands, np.array(mount.up))
+    sliding = {joint.name for joint in moves.joints() if joint.kind.name == "prismatic"}
+    base = Base(moves, lines, gather_blocks(ends.stands, sliding, moves.sizes), np.array(mount.up))
     made["ground"] = _solids("ground", base.parts(), used)
+    for pair in moves.rolling():
+        made.may_touch(pair.wheel.body.name, pair.plane.body.name)
     made.along = made.space = True
     made.mount = (mount.kind, mount.up)
     return made

@@ -1,4 +1,4 @@
-"""The motion that parts in space must have room for, in millimetres, and the size that all parts follow."""
+"""The motion that parts in space have room for (mm), and the size that they follow."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from shared.stage.errors import UserError
 Array = NDArray[np.float64]
 POSES = 72
 """Poses of the motion at which is looked whether parts meet."""
-OF_LINK, OF_WHOLE, THICKEST = 0.085, 0.020, 0.032
-"""Radius of a rod: this part of the shortest link, within these parts of the whole mechanism."""
+OF_LINK, OF_SHORTEST, OF_WHOLE, THICKEST = 0.085, 1.0 / 6.0, 0.020, 0.032
+"""Radius of a rod: between two parts of the shortest link, so that it is within two parts of the whole mechanism."""
 MM = 1000.0
 
 
@@ -74,6 +74,21 @@ class Sizes:
         return 1.25 * self.rod
 
 
+@dataclass(frozen=True)
+class Rolling:
+    """A round body on a plane: by a joint that rolls, or by the force of a tyre or contact."""
+
+    name: str
+    plane: Marker
+    wheel: Marker
+    ring: float
+    """Radius of the ring in which its rim has its middle (mm)."""
+    rim: float
+    """Radius of the rim's section (mm), 0 of a sharp edge."""
+    leans: bool
+    """True if its edge must be sharp or round: it rolls exactly, at any lean."""
+
+
 class Moves:
     """Poses of all bodies over the motion."""
 
@@ -110,27 +125,35 @@ class Moves:
         """Return the joints that hold bodies; couplings of other joints have no parts."""
         return [joint for joint in self.m.joints.values() if not joint.coupled]
 
+    def rolling(self) -> list[Rolling]:
+        """Return what rolls on planes, by joints and by forces."""
+        exact = [joint for joint in self.m.joints.values() if joint.kind.name == "rolling"]
+        forces = [force for force in self.m.forces.values() if force.kind.name in ("tyre", "contact")]
+        return [
+            Rolling(pair.name, pair.i, pair.j, MM * pair.params["ring"], MM * pair.params["radius"], pair in exact)
+            for pair in [*exact, *(force for force in forces if force.params["heights"] is None)]
+        ]
+
     def _rod(self) -> float:
         """Return the radius of rods (mm)."""
         places: dict[str, list[Array]] = {name: [] for name in self.m.bodies}
         for joint in self.joints():
-            for marker in (joint.i, joint.j):
+            for marker in (joint.i, joint.j) if joint.kind.name != "rolling" else ():
                 places[marker.body.name].append(self.place(marker))
             if "length" in joint.params:
                 places[joint.name + " (rod)"] = [np.zeros(3), np.array([MM * joint.params["length"], 0, 0])]
         for name, body in self.m.bodies.items():
             if body.shape is not None and body.shape.kind == "rod":
                 places[name] += [np.zeros(3), np.array([MM * body.shape.length, 0.0, 0.0])]
-            elif name != "ground":
+            elif name != "ground" and (body.mass > 0.0 or len(places[name]) < 2):
                 places[name].append(MM * np.array(body.com))
+            if body.shape is not None and body.shape.kind == "disc":
+                places[name] += [MM * body.shape.radius * y for y in (np.eye(3)[1], -np.eye(3)[1])]
         everything = np.concatenate(
-            [
-                self.world(name, np.array(own)).reshape(-1, 3)
-                for name, own in places.items()
-                if own and name in self.poses
-            ]
+            [self.world(name, np.array(own)) for name, own in places.items() if own and name in self.poses], axis=1
         )
-        whole = float(np.linalg.norm(np.ptp(everything, axis=0)))
+        poses = everything[:, None] if self.rolling() else everything.reshape(1, 1, -1, 3)
+        whole = max(float(np.linalg.norm(np.ptp(pose[0], axis=0))) for pose in poses)
         links = [
             float(np.linalg.norm(a - b))
             for name, own in places.items()
@@ -142,4 +165,5 @@ class Moves:
             raise UserError(
                 f"{self.m.name}: all joints and centres of mass are on one place, so there is nothing to shape"
             )
-        return min(max(OF_LINK * min(links, default=whole), OF_WHOLE * whole), THICKEST * whole)
+        least = min(links, default=whole)
+        return min(max(OF_LINK * least, min(OF_WHOLE * whole, OF_SHORTEST * least)), THICKEST * whole)

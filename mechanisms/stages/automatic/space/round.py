@@ -78,12 +78,17 @@ def yoke(
     return out
 
 
+def rays(axis: Array) -> Array:
+    """Return eight unit vectors (8, 3) round an axis."""
+    x = across(axis)
+    turn = np.linspace(0.0, 2.0 * math.pi, 9)[:-1]
+    return np.outer(np.cos(turn), x) + np.outer(np.sin(turn), np.cross(axis, x))
+
+
 def tube_lines(middle: Array, axis: Array, radius: float, half: float) -> list[tuple[Array, Array, float]]:
     """Return thin lines (two places and a radius each) on a cylinder, which end where it ends."""
-    x = across(axis)
-    y, thin = np.cross(axis, x), 0.25 * radius
-    turn = np.linspace(0.0, 2.0 * math.pi, 9)[:-1]
-    rim = middle + (radius - thin) * (np.outer(np.cos(turn), x) + np.outer(np.sin(turn), y))
+    thin = 0.25 * radius
+    rim = middle + (radius - thin) * rays(axis)
     return [(place - (half - thin) * axis, place + (half - thin) * axis, thin) for place in rim]
 
 
@@ -99,7 +104,9 @@ def fused(solids: list[cq.Shape], cuts: list[cq.Shape]) -> cq.Workplane:
     """Return one solid of several that overlap, less others."""
     made = solids[0]
     if len(solids) > 1:
-        made = made.fuse(*solids[1:]).clean()
+        joined = made.fuse(*solids[1:])
+        cleaned = joined.clean()
+        made = cleaned if cleaned.isValid() else joined  # cleaning breaks some where spheres meet planes
     if cuts:
         made = made.cut(*cuts)
     return cq.Workplane(obj=made)

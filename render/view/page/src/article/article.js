@@ -156,6 +156,8 @@ export class Article {
 
   cursor() {
     const now = performance.now();
+    if (!this.solid && this.app.stage.solid) this.camera.look(this.scenes.get(this.now)?.near ?? null, true); // the parts have come
+    this.solid = this.app.stage.solid;
     this.step(now);
     this.chart?.cursor();
     this.numbers?.show();

@@ -69,7 +69,7 @@ export class Numbers {
     return {
       there: () => !!number, low: () => number.low, high: () => number.high, get: () => this.designs.values[name] ?? number.value,
       set: (value) => this.designs.move({ [name]: Number(value.toPrecision(3)) }),
-      words: () => number && `${number.label} ${written(this.designs.values[name] ?? number.value, number.unit)}`.replace("N m", "N·m"),
+      words: () => written(this.designs.values[name] ?? number.value, number.unit),
     };
   }
 

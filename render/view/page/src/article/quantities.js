@@ -30,7 +30,7 @@ export function wordsOf({ values, unit }, measure, motion) {
   for (const value of values) [low, high] = [Math.min(low, value), Math.max(high, value)];
   const value = measure === "range" ? high - low : measure === "most" ? Math.max(-low, high) : motion.linear(values);
   if (unit === "rad") return degrees(measure === "now" && high - low > TURN ? value - TURN * Math.floor(value / TURN) : value);
-  return (measure === "now" ? live([values], unit, DIGITS.now)(value) : written(value, unit, DIGITS[measure])).replace("N m", "N·m");
+  return (measure === "now" ? live([values], unit, DIGITS.now)(value) : written(value, unit, DIGITS[measure]));
 }
 
 /** Whole degrees. @param {number} angle rad */

@@ -1,6 +1,6 @@
 /**
- * The frames of the loop: node loop.cjs PAGE PLAN FOLDER. The page is that of make view-four-bar; on the left are the lines,
- * on the right both its views, one over the other.
+ * The frames of the loop: node loop.cjs PAGE PLAN FOLDER. The page is that of make view-four-bar; on the left, or above, are
+ * the lines, beside them both its views, one over the other.
  */
 const fs = require("node:fs");
 const path = require("node:path");
@@ -10,12 +10,12 @@ const plan = JSON.parse(fs.readFileSync(planFile, "utf8"));
 
 const BACKDROP = "#0b0e14";
 const STYLE = `
-  .mbsd { grid-template: minmax(0, 1fr) / ${plan.lines_width}px minmax(0, 1fr) !important; grid-template-areas: "code stage" !important; position: fixed !important; }
+  .mbsd { grid-template: ${plan.above ? `${plan.lines_size}px minmax(0, 1fr) / minmax(0, 1fr)` : `minmax(0, 1fr) / ${plan.lines_size}px minmax(0, 1fr)`} !important; grid-template-areas: ${plan.above ? '"code" "stage"' : '"code stage"'} !important; position: fixed !important; }
   .mbsd :is(.top, .side, .bar, .shows, .labels, .notice) { display: none !important; }
   .mbsd .stage { grid-template-rows: minmax(0, 1fr); }
   .mbsd .view { visibility: visible !important; }
   .mbsd .legend { right: 18px; left: auto; bottom: 14px; font-size: 14px; padding: 5px 11px; border-radius: 8px; background: rgb(13 17 23 / 0.82); }
-  .loop-code { grid-area: code; margin: 0; padding: 0 0 0 22px; display: flex; align-items: center; background: #0d1117; color: #d7dde5; font: 12.8px/25px "DejaVu Sans Mono", monospace; }
+  .loop-code { grid-area: code; margin: 0; padding: 0 0 0 ${1.4 * plan.letters}px; display: flex; align-items: center; background: #0d1117; color: #d7dde5; font: ${plan.letters}px/1.75 "DejaVu Sans Mono", monospace; }
   .loop-code code { font: inherit; white-space: pre; }
   .loop-code .text { color: #9ecbff; }
   .loop-code .figure { color: #79c0ff; }

@@ -103,7 +103,7 @@ def held(
         for _ in range(STEPS):
             half = (low + high) / 2
             low, high = (half, high) if fills(half) >= most else (low, half)
-        low = _uncut(view, stood, things, low, lambda part: fills(part) >= KEPT * most)
+        low = _uncut(view, stood, things, low, lambda part: fills(part) >= 0.98 * KEPT * most)
     return np.concatenate([machine, drawn, middle + low * (around - middle)])
 
 
@@ -117,11 +117,11 @@ def _uncut(
     """
     if not things:
         return low
-    wider = [float(part) for part in np.linspace(low, 1.0, TRIES) if part == low or is_large(part)]
+    wider = [float(part) for part in np.linspace(low, 1.0, 5 * TRIES) if part == low or is_large(part)]
     for part in wider:
         if all(cut_share(view, stood(part), thing, AIR) < WHOLE for thing in things):
             return part
-    parts = [*np.linspace(low, 0.0, TRIES), *wider[1:], 1.0]
+    parts = [*np.linspace(low, 0.0, TRIES), *wider[1:]]
     misses = [max(near_miss(view, stood(part), thing) for thing in things) for part in parts]
     return float(parts[int(np.argmin(np.round(misses, 3)))])
 

@@ -27,6 +27,8 @@ from shared.contract.shot import Label, Trail
 Array = NDArray[np.float64]
 LARGE = 0.3
 """A piece is large if it is longer than this part of all that stands."""
+FOOT, SHORT = 0.01, 0.1
+"""A piece is the foot if it begins so near to the floor and is longer than that, as parts of the same."""
 SAMPLES, MOST = 120, 1200
 """Poses over the motion from which the swept space is taken: of a turn or a second, and of the whole at most."""
 
@@ -39,7 +41,7 @@ class SweptSpace:
 
         ``paths`` has the height of each traced point that leaves a trail.
         """
-        self._poses, self._paths = poses, paths
+        self._poses, self._paths, self._mount = poses, paths, parts.mount
         self._files = {
             body: [folder / piece.stl for piece in solids.pieces.values()] for body, solids in parts.bodies.items()
         }
@@ -74,12 +76,17 @@ class SweptSpace:
 
     @cached_property
     def things(self) -> list[Array]:
-        """Points (n, 3) of each large piece that stands: the plate, the column and the foot of a stand."""
+        """Points (n, 3) of each large piece that stands, and of the foot of a stand, however small it is."""
         if not len(self.around):
             return []
         size = float(np.linalg.norm(np.ptp(self.around, axis=0)))
         pieces = self._outlines.get("ground", [])
-        return [piece for piece in pieces if float(np.linalg.norm(np.ptp(piece, axis=0))) > LARGE * size]
+        floor = float((self.around @ self._mount.up).min()) + FOOT * size if self._mount.kind == "stand" else -math.inf
+        sizes = [float(np.linalg.norm(np.ptp(piece, axis=0))) / size for piece in pieces]
+        feet = [float((piece @ self._mount.up).min()) < floor for piece in pieces]
+        return [
+            piece for piece, long, foot in zip(pieces, sizes, feet, strict=True) if long > (SHORT if foot else LARGE)
+        ]
 
     def places(self, times: Array) -> Array:
         """Return the outermost points (T, n, 3) of all that moves at ``times`` (T,); none if nothing moves."""

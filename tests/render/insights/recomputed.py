@@ -168,6 +168,18 @@ ELSEWHERE = {
     *("straight_line", "step", "transmission", "pressure_angle", "losses", "swing", "work_share", "firing", "climbs"),
     *("changing_ratio", "difference", "speed_peak", "impact", "event", "orbit", "gas", "isolation", "toggle", "scale"),
     *("ellipse", "couple", "decay", "sticking", "roughness", "change_point", "whirl", "cusp", "crossing", "speed"),
-    *("no_effort", "energy_kept", "stroke", "period", "even_return", "rhythm", "returns", "slide", "halves", "reach"),
+    *(
+        "no_effort",
+        "energy_kept",
+        "stroke",
+        "period",
+        "even_return",
+        "rhythm",
+        "returns",
+        "slide",
+        "halves",
+        "reach",
+        "limit",
+    ),
 }
 """Kinds whose numbers test_closed_forms.py and test_recomputed.py hold to closed forms."""

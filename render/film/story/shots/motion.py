@@ -84,7 +84,7 @@ SWING = 9.0
 """Degrees of azimuth to each side."""
 SHORT, STILL, LONG = 5.0, 7.5, 9.0
 """Seconds that the shot takes at least, where the camera stands and a second showing costs nothing, and at most."""
-REST, OF = 0.3, 0.2
+REST, OF = 0.2, 0.2
 """Seconds for which a motion that ends stands before it begins anew, and at most that part of it."""
 
 
@@ -156,7 +156,8 @@ def last(scenery: Scenery) -> Shot:
     clock, stop, runs = scenery.film.clock, scenery.moving(MOVES), scenery.whole(SECONDS)
     at, rate = _run(scenery, runs)
     end = opening(scenery)
-    begin = turned(scenery.stand(strip=False), -14.0, 3.0, 1.1)
+    aside = [turned(scenery.stand(strip=False), -14.0, 3.0, farther) for farther in (1.1, 1.2, 1.3, 1.0)]
+    begin = next((stand for stand in aside if not scenery.misses(stand)), aside[0])
 
     def model(s: float) -> float:
         return at + rate * (s - stop) if clock.repeats else max(at + rate * (s - stop), clock.start)

@@ -145,7 +145,7 @@ class Moves:
         for name, body in self.m.bodies.items():
             if body.shape is not None and body.shape.kind == "rod":
                 places[name] += [np.zeros(3), np.array([MM * body.shape.length, 0.0, 0.0])]
-            elif name != "ground" and (body.mass > 0.0 or len(places[name]) < 2):
+            elif name != "ground" and (body.mass > 0.0 or any(body.place) or len(places[name]) < 2):
                 places[name].append(MM * np.array(body.com))
             if body.shape is not None and body.shape.kind == "disc":
                 places[name] += [MM * body.shape.radius * y for y in (np.eye(3)[1], -np.eye(3)[1])]

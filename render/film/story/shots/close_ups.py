@@ -166,9 +166,9 @@ def _aimed(scenery: Scenery, stand: Stand, place: tuple[float, float, float]) ->
 def _caption(scenery: Scenery, name: str) -> str:
     """Return an insight that is neither the story's stop nor its motion, best of the joint; else the joint's name."""
     said = [each for each in (*scenery.reasons[:1], scenery.of_motion) if each is not None]
-    told = {each.template for each in said} | {abs(each.number) for each in said}
+    reported = {each.template for each in said} | {abs(each.number) for each in said}
     every = [each for each in (*scenery.shows, *scenery.reasons) if scenery.fits(each)]
-    new = [each for each in every if each.template not in told and abs(each.number) not in told]
+    new = [each for each in every if each.template not in reported and abs(each.number) not in reported]
     insight = next((each for each in new if name in each.joints), next(iter(new), None))
     return scenery.say("joint", name=plain(name)) if insight is None else scenery.sentence(insight)
 

@@ -196,7 +196,6 @@ def test_its_story_moves_and_is_heard_from_the_first_second(telling: Telling) ->
     assert (heard.moments_at(np.linspace(0.02, 0.98, 20))[1] > 0.0).all()
 
 
-@pytest.mark.slow
 def test_its_story_is_never_suddenly_loud(telling: Telling) -> None:
     """By loudness of 3 s each, as EBU R 128 has it; nor is its first second silent."""
     clock = telling.film.clock

@@ -142,16 +142,16 @@ def tabulate_along(
     phi: np.ndarray,
     compact: np.ndarray,
     gamma: np.ndarray,
-    held: np.ndarray | None = None,
+    pairs: np.ndarray | None = None,
 ) -> None:
     """Tabulate along a motion q, v (T, 3 nb), on the branches along which points move at each pose.
 
-    ``held`` (T, m): the rows that held, which says which of two places of an outline a row has.
+    ``pairs`` (T, o): the pairs of outlines that rows kept; None: none.
     """
     if "outline" in packed.specials.names:
         from mbsd.arrays.outline_pairs import tabulate_pairs
 
-        tabulate_pairs(packed, drives, q, v, phi, compact, gamma, held)
+        tabulate_pairs(packed, drives, q, v, phi, compact, gamma, pairs)
         return
     following = CurveBranches(packed)
     if not following.rows:

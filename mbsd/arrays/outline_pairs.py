@@ -1,7 +1,4 @@
-"""Pairs of outlines along a known motion: which of two rows of the same runs has which of two places.
-
-A row that held has the nearest place, and its sibling the next one.
-"""
+"""Pairs of outlines along a known motion, which rows kept while they held."""
 
 from __future__ import annotations
 
@@ -12,7 +9,6 @@ import numpy as np
 
 from mbsd.equations.assembly import tabulate
 from mbsd.equations.relative.equation import ROW
-from mbsd.equations.relative.outline_features import CODES, PLACE
 from mbsd.equations.system import LAST
 
 if TYPE_CHECKING:
@@ -59,31 +55,28 @@ def siblings(rows: list[OutlineRow]) -> list[int]:
     return out
 
 
+def pair_rows(packed: Packed) -> list[int]:
+    """Return the rows of Workspace.relative whose LAST has the codes of pairs: of each contact, then of its way."""
+    return [at for row in outline_rows(packed) for at in (row.relative, row.way) if at >= 0]
+
+
 def tabulate_pairs(
     packed: Packed, drives: np.ndarray, q: np.ndarray, v: np.ndarray, phi: np.ndarray, compact: np.ndarray,
-    gamma: np.ndarray, held: np.ndarray | None,
+    gamma: np.ndarray, pairs: np.ndarray | None,
 ) -> None:  # fmt: skip
-    """Tabulate along a motion q, v (T, 3 nb), each row with its place, where rows ``held`` (T, m)."""
-    rows, relative = outline_rows(packed), packed.ws.relative
-    touched = [at for row in rows for at in (row.relative, row.way) if at >= 0]
-    kept = relative[touched, LAST].copy()
-    relative[touched, LAST] = math.nan
-    tabulate(packed.system, drives, q, v, packed.ws, phi, compact, gamma)
-    pairs = [(rows[k], rows[j]) for k, j in enumerate(siblings(rows)) if j > k]
-    swapped = (
-        []
-        if held is None
-        else np.flatnonzero(sum((~held[:, a.gap] & held[:, b.gap] for a, b in pairs), np.zeros(len(q), bool)))
-    )
-    for k in swapped:
-        at = slice(k, k + 1)
-        args = packed.system, drives[at], q[at], v[at], packed.ws, phi[at], compact[at], gamma[at]
-        tabulate(*args)
-        for first, second in pairs:
-            if held is not None and held[k, second.gap] and not held[k, first.gap]:
-                place = relative[first.relative, PLACE]
-                for row, code in ((second, place), (first, CODES * place)):
-                    relative[[row.relative] if row.way < 0 else [row.relative, row.way], LAST] = code
-        tabulate(*args)
-        relative[touched, LAST] = math.nan
-    relative[touched, LAST] = kept
+    """Tabulate along a motion q, v (T, 3 nb), each row with the pair that it kept, ``pairs`` (T, o); None: none."""
+    rows, relative = pair_rows(packed), packed.ws.relative
+    before = relative[rows, LAST].copy()
+    codes = np.full((1, len(rows)), math.nan) if pairs is None else np.unique(pairs, axis=0, equal_nan=True)
+    for code in codes:
+        relative[rows, LAST] = code
+        every = np.ones(len(q), bool) if pairs is None else _alike(pairs, code)
+        parts = [np.zeros_like(whole[every]) for whole in (phi, compact, gamma)]
+        tabulate(packed.system, drives[every], q[every], v[every], packed.ws, *parts)
+        phi[every], compact[every], gamma[every] = parts
+    relative[rows, LAST] = before
+
+
+def _alike(pairs: np.ndarray, code: np.ndarray) -> np.ndarray:
+    """Return (T,) True where ``pairs`` (T, o) are those of ``code`` (o,)."""
+    return ((pairs == code) | (np.isnan(pairs) & np.isnan(code))).all(axis=1)

@@ -81,17 +81,19 @@ def _plain(ready: PreparedDynamics, state: State, out: Output) -> Recording:
 def recording_of(met: EventSteps, event_rows: bool = False) -> Recording:
     """Return the recording of steps with events that have ended, with rows at events if asked for."""
     written = int(met.state.count[NEXT])
-    out, held = Output(*(part[:written] for part in met.out)), met.held[:written]
+    out, held, pairs = Output(*(part[:written] for part in met.out)), met.held[:written], met.pairs[:written]
     rows = met.rows if event_rows else met.rows[-1:] if met.ended else []
     if rows:
-        parts = [np.stack(column) for column in zip(*(row[:-1] for row in rows), strict=True)]
+        parts = [np.stack(column) for column in zip(*(row[:-2] for row in rows), strict=True)]
         both = [np.concatenate([a, b]) for a, b in zip(out, parts, strict=True)]
         order = np.argsort(both[0], kind="stable")
         out = Output(*(part[order] for part in both))
-        held = np.concatenate([held, np.stack([row[-1] for row in rows])])[order]
+        held = np.concatenate([held, np.stack([row[-2] for row in rows])])[order]
+        pairs = np.concatenate([pairs, np.stack([row[-1] for row in rows])])[order]
     return Recording(
-        out, held, int(met.state.count[ACCEPTED]), met.happenings, met.snapshots, met.ready.approaches.copy()
-    )
+        out, held, int(met.state.count[ACCEPTED]), met.happenings, met.snapshots, met.ready.approaches.copy(),
+        pairs=pairs if pairs.shape[1] else None,
+    )  # fmt: skip
 
 
 def resumed(
@@ -113,7 +115,11 @@ def resumed(
     ]
     out = Output(*(np.concatenate(parts) for parts in zip(*(piece.out for piece in pieces), strict=True)))
     held = np.concatenate([piece.held for piece in pieces])
-    return Recording(out, held, sum(piece.steps for piece in pieces), approaches=recording.approaches)
+    pairs = [piece.pairs for piece in pieces if piece.pairs is not None]
+    return Recording(
+        out, held, sum(piece.steps for piece in pieces), approaches=recording.approaches,
+        pairs=np.concatenate(pairs) if pairs else None,
+    )  # fmt: skip
 
 
 def _gone_on(
@@ -201,8 +207,10 @@ def with_phase_changes(
     parts = zip(out, more.out, strict=True)
     both = [np.concatenate([first[kept], second]) for first, second in parts]
     held = np.concatenate([recording.held[kept], more.held])
-    order = np.argsort(both[0], kind="stable")
-    return replace(recording, out=Output(*(part[order] for part in both)), held=held[order]), asked
+    order, pairs = np.argsort(both[0], kind="stable"), None
+    if recording.pairs is not None and more.pairs is not None:
+        pairs = np.concatenate([recording.pairs[kept], more.pairs])[order]
+    return replace(recording, out=Output(*(part[order] for part in both)), held=held[order], pairs=pairs), asked
 
 
 PART = "the part done, 0 .. 1"
@@ -373,7 +381,8 @@ def solution(
         phi, bend, rate = np.zeros((3, at.stop - start, rows))
         compact = np.zeros((at.stop - start, rows, 6))
         held = recording.held[at]
-        tabulate_along(packed, drives[at], q[at], v[at], phi, compact, bend, held)  # gamma; J a - gamma below
+        pairs = None if recording.pairs is None else recording.pairs[at]
+        tabulate_along(packed, drives[at], q[at], v[at], phi, compact, bend, pairs)  # gamma; J a - gamma below
         if recording.independent:
             motion = out.t[at], q[at], v[at]
             out.lam[at], out.margin[at] = multipliers_along(
@@ -417,6 +426,7 @@ def solution(
         changes=ready.initial.poses + ready.initial.velocities,
         events=tuple(recording.happenings),
         held=recording.held,
+        pairs=recording.pairs,
         span=(ready.start, ready.end),
         approached=approached,
         states=states,

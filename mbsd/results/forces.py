@@ -54,7 +54,7 @@ def force_view(moved: Moved, name: str, effort: np.ndarray | None = None) -> For
     force, markers = packed.forces[k], (int(packed.force_markers[k, 0]), int(packed.force_markers[k, 1]))
     way = _way(moved, force, *markers)
     if force.kind.of_reactions:
-        effort = friction_view(packed, name, moved.q, moved.v, moved.lam, moved.held).force
+        effort = friction_view(packed, name, moved.q, moved.v, moved.lam, moved.held, moved.pairs).force
     if effort is None:
         load, power = loads_of(moved, k)
         places = _places(moved, force, *markers)

@@ -31,11 +31,18 @@ class FrictionView(Suggesting):
 
 
 def friction_view(
-    packed: Packed, name: str, q: np.ndarray, v: np.ndarray, lam: np.ndarray, held: np.ndarray | None = None
+    packed: Packed,
+    name: str,
+    q: np.ndarray,
+    v: np.ndarray,
+    lam: np.ndarray,
+    held: np.ndarray | None = None,
+    pairs: np.ndarray | None = None,
 ) -> FrictionView:
     """View of the friction ``name``; q, v (T, nb, 3) or (T, 3 nb), lam (T, m).
 
-    ``held`` (T, m) are the rows of J that hold, None: all. A joint that an action released has no friction.
+    ``held`` (T, m) are the rows of J that hold, None: all; ``pairs`` (T, o) those of outlines.
+    A joint that an action released has no friction.
     """
     from mbsd.arrays.curve_branches import tabulate_along
     from mbsd.arrays.directory import directory
@@ -47,7 +54,7 @@ def friction_view(
     flat_q, flat_v = (np.ascontiguousarray(part.reshape(count, -1)) for part in (q, v))
     phi, gamma, compact = np.zeros((count, rows)), np.zeros((count, rows)), np.zeros((count, rows, 6))
     drives = np.zeros((count, len(packed.motions) + 1, 3))
-    tabulate_along(packed, drives, flat_q, flat_v, phi, compact, gamma, held)
+    tabulate_along(packed, drives, flat_q, flat_v, phi, compact, gamma, pairs)
     loads = pack_loads(packed)
     normal = normals_along(packed, loads, flat_q, compact, lam)
     [k] = directory(packed)[name].friction

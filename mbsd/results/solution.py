@@ -131,6 +131,8 @@ class Solution(Suggesting, Generic[AnyModel]):
     """Events of a simulation: of contacts, stops and user events."""
     held: np.ndarray | None = field(default=None, repr=False)
     """(T, m) which rows of J held, of a simulation; None: all."""
+    pairs: np.ndarray | None = field(default=None, repr=False)
+    """(T, o) pairs of outlines that touched, of a simulation; None without outlines."""
     span: tuple[float, float] | None = None
     """Times (s) over which a simulation prepared the laws of its forces; None: those of ``t``."""
     law_times: np.ndarray | None = field(default=None, repr=False)
@@ -183,7 +185,7 @@ class Solution(Suggesting, Generic[AnyModel]):
     def only(self, rows: np.ndarray) -> Solution[AnyModel]:
         """Return the motion at some of its outputs alone, by a mask ``rows`` (T,) of bool."""
         margin = self.margin
-        arrays = ("work", "held", "law_times", "approached", "states")
+        arrays = ("work", "held", "pairs", "law_times", "approached", "states")
         known = {name: part[rows] for name in arrays if (part := getattr(self, name)) is not None}
         return replace(
             self,
@@ -229,13 +231,13 @@ class Solution(Suggesting, Generic[AnyModel]):
         """Gap and forces of a contact, stop or rope of a simulation."""
         rows = self.packed.contact_gaps()
         self._index(name, list(rows), "contact of a simulation")
-        return contact_view(self.packed, rows[name], self.q, self.v, self.lam)
+        return contact_view(self.packed, rows[name], self.q, self.v, self.lam, self.pairs)
 
     def friction(self, name: str) -> FrictionView:
         """Friction of a joint, by the name that ``m.friction`` gave it."""
         names = [force.name for force in self.packed.forces if force.kind.of_reactions]
         self._index(name, names, "friction of a joint")
-        return friction_view(self.packed, name, self.q, self.v, self.lam, self.held)
+        return friction_view(self.packed, name, self.q, self.v, self.lam, self.held, self.pairs)
 
     def force(self, name: str) -> ForceView:
         """Return the results of a force: force, torque and point on each body, what it measures, its power.

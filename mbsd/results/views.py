@@ -249,8 +249,10 @@ class ContactView(Suggesting):
         return self.normal > 0.0
 
 
-def contact_view(packed: Packed, row: int, q: np.ndarray, v: np.ndarray, lam: np.ndarray) -> ContactView:
-    """View of the contact whose gap is ``row``; q, v (T, nb, 3), lam (T, m)."""
+def contact_view(
+    packed: Packed, row: int, q: np.ndarray, v: np.ndarray, lam: np.ndarray, pairs: np.ndarray | None = None
+) -> ContactView:
+    """View of the contact whose gap is ``row``; q, v (T, nb, 3), lam (T, m), ``pairs`` of outlines (T, o)."""
     from mbsd.arrays.curve_branches import tabulate_along
     from mbsd.arrays.reactions import times_compact
 
@@ -258,7 +260,7 @@ def contact_view(packed: Packed, row: int, q: np.ndarray, v: np.ndarray, lam: np
     flat_q, flat_v = q.reshape(count, -1), v.reshape(count, -1)
     phi, gamma, compact = np.zeros((count, rows)), np.zeros((count, rows)), np.zeros((count, rows, 6))
     drives = np.zeros((count, len(packed.motions) + 1, 3))
-    tabulate_along(packed, drives, flat_q, flat_v, phi, compact, gamma, lam != 0.0)
+    tabulate_along(packed, drives, flat_q, flat_v, phi, compact, gamma, pairs)
     joint = packed.joint_of_row(row)
     friction = -lam[:, row + 1] if len(joint.kind.constraints) > 1 else np.zeros(count)
     return ContactView(phi[:, row], times_compact(packed, compact, flat_v)[:, row], -lam[:, row], friction)

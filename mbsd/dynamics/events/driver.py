@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.arrays.outline_pairs import pair_rows
 from mbsd.base.errors import ModelError, ModelWarning, SimulationError
 from mbsd.base.warning import warn
 from mbsd.compiling.callback import Callback
@@ -24,7 +25,7 @@ from mbsd.dynamics.runs.diagnosis import refusal
 from mbsd.dynamics.runs.run import Snapshot
 from mbsd.dynamics.runs.steps import Pace, advance, check_callbacks
 from mbsd.dynamics.state import NEXT, NOT_FINITE, PAUSED, REACHED, TIME, WORK, Output, State
-from mbsd.equations.system import ZERO
+from mbsd.equations.system import LAST, ZERO
 from mbsd.model.event import Event, Happening
 
 if TYPE_CHECKING:
@@ -65,6 +66,9 @@ class EventSteps:
         self.snapshots: list[Snapshot] = []
         self.held = np.zeros((len(out.t), len(self.packed.ws.phi)), bool)
         """(T, m) rows that held at each output."""
+        self._outlined = pair_rows(self.packed)
+        self.pairs = np.zeros((len(out.t), len(self._outlined)))
+        """(T, o) pairs of outlines at each output."""
         self.rows: list[tuple] = []
         """Outputs right before and after each event: the parts of an Output, and the rows that hold."""
         self.ended = False
@@ -73,6 +77,7 @@ class EventSteps:
         self._before: tuple | None = None
         self._kept = tuple(part for part in self._changing() if part.size)
         self._states, self._senses, self._holding = self._read()
+        self._paired = self._pairs_now()
 
     # -- going on -----------------------------------------------------------------------------------------------
 
@@ -91,6 +96,7 @@ class EventSteps:
         self.ready.following.settle(*self.state.y)
         self.state.clock[WORK] = work
         self._states, self._senses, self._holding = self._read()
+        self._paired = self._pairs_now()
 
     def to(self, end: float, progress: Callable[[float], None] | None = None) -> bool:
         """Go on to ``end`` (s); False if a terminal event came before."""
@@ -165,11 +171,13 @@ class EventSteps:
         """Note which rows held at the outputs that were written since the last call."""
         following = int(self.state.count[NEXT])
         self.held[self._told : following] = self._holding
+        self.pairs[self._told : following] = self._paired
         self._told = max(self._told, following)
 
     def _note_jump(self) -> None:
         clock, known = self.contacts.clock, len(self.happenings)
         states, senses, self._holding = self._read()
+        self._paired = self._pairs_now()
         which = int(clock[arrays.WHICH]) - 1 - len(self.contacts.place)
         if which >= 0:
             self._tell(self.events[which].name, "event")
@@ -246,8 +254,11 @@ class EventSteps:
         state = self.state
         return (
             float(state.clock[TIME]), state.y.copy(), state.dy[1].copy(), self.contacts.lam.copy(),
-            float(state.clock[WORK]), float(self.run.scratch.report[0]), self.switches.held(),
+            float(state.clock[WORK]), float(self.run.scratch.report[0]), self.switches.held(), self._pairs_now(),
         )  # fmt: skip
+
+    def _pairs_now(self) -> np.ndarray:
+        return self.packed.ws.relative[self._outlined, LAST].copy()
 
     # -- what cannot be -----------------------------------------------------------------------------------------
 

@@ -51,10 +51,14 @@ class Recording:
     """How fast contacts approached; None where none asks."""
     independent: bool = False
     """Integrated in independent coordinates; multipliers and margins are still to be found."""
+    pairs: np.ndarray | None = None
+    """(T, o) pairs of outlines at each output, codes by rows of ``pair_rows``; None without outlines."""
 
     def only(self, outputs: np.ndarray) -> Recording:
         """The same with some of its outputs alone, by a mask (T,): those from which a run may go on."""
-        return replace(self, out=Output(*(part[outputs] for part in self.out)), held=self.held[outputs])
+        pairs = None if self.pairs is None else self.pairs[outputs]
+        out = Output(*(part[outputs] for part in self.out))
+        return replace(self, out=out, held=self.held[outputs], pairs=pairs)
 
 
 AUTO, REFERENCE, INDEPENDENT = FORMULATIONS = "auto", "reference", "independent"

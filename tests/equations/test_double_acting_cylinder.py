@@ -146,7 +146,8 @@ def valved() -> Mechanism:
 
 
 def test_its_pressures_do_not_depend_on_how_many_outputs_there_are(valved: Mechanism) -> None:
-    few, many = (valved.sweep(times=times).force("steam") for times in ([0.0, 0.5, 1.0], np.linspace(0.0, 1.0, 401)))
+    few: Any = valved.sweep(times=[0.0, 0.5, 1.0]).force("steam")
+    many: Any = valved.sweep(times=np.linspace(0.0, 1.0, 401)).force("steam")
     assert np.allclose(few.pressure_a, many.pressure_a[::200], rtol=1e-6)
     assert np.allclose(few.effort, many.effort[::200], rtol=0.0, atol=1e-6 * np.abs(many.effort).max())
 

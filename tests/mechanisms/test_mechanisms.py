@@ -102,7 +102,8 @@ def _taken_by_impacts(motion: contract.Motion) -> np.ndarray:
     for event in motion.events:
         before = int(np.searchsorted(time, event.time))
         energy[before + 1 if before < len(time) and time[before] == event.time else before :] += event.energy
-        assert event.what != "impact" or event.energy <= 1e-12 * max(motion.energy.kinetic)
+        driven = bool(motion.drivers)  # a driver may give energy in an impact
+        assert driven or event.what != "impact" or event.energy <= 1e-12 * max(motion.energy.kinetic)
     return energy
 
 
@@ -184,7 +185,8 @@ def test_its_story_is_made_without_a_line_in_its_folder(telling: Telling) -> Non
         times = [placed.shot.model(k / story.fps) for k in range(placed.end - placed.first)]
         back = np.flatnonzero(np.diff(times) < -1e-12)
         assert clock.repeats or placed.shot.name == "motion" or not len(back)
-        assert all(times[k + 1] == pytest.approx(clock.start, abs=1e-3 * (clock.end - clock.start)) for k in back)
+        frame = max(1e-3 * (clock.end - clock.start), 1.01 * clock.rate / story.fps)
+        assert all(times[k + 1] == pytest.approx(clock.start, abs=frame) for k in back)
 
 
 def test_its_story_moves_and_is_heard_from_the_first_second(telling: Telling) -> None:

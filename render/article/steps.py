@@ -88,9 +88,9 @@ class _Steps(Sentences):
         for each in machine.insights:
             first.setdefault(each.kind, each)
         self.insights = list(first.values())
-        moving = [each for each in self.insights if each.kind in MOTION]
+        moving = [each for kind, each in first.items() if kind in MOTION]
         self.tricks = moving[: MOST["trick"]]
-        self.ways = [*moving[MOST["trick"] :], *(each for each in self.insights if each.kind in WAYS)]
+        self.ways = [*moving[MOST["trick"] :], *(each for kind, each in first.items() if kind in WAYS)]
 
     def what(self) -> Iterator[str]:
         """Yield the docstring and how the article is used."""

@@ -37,6 +37,8 @@ def test_contacts_are_made_of_these_constraints() -> None:
         "gear",
         "curve",
         "curve_rolling",
+        "outline",
+        "outline_sliding",
     }
 
 

@@ -274,9 +274,9 @@ class Sentences:
         for name in each.joints:
             for sort, series in (("joint", "size"), ("point", "speed"), ("load", "effort")):
                 kind = self._kind(sort, name)
-                if kind and not (kind == "joint" and each.kind in MOTION):
+                if kind and not (kind == "joint" and is_of(each, MOTION)):
                     return address(kind, name, "normal" if kind == "contact" else series)
-        for name in reversed(each.bodies) if each.kind in LIMITS else each.bodies:
+        for name in reversed(each.bodies) if is_of(each, LIMITS) else each.bodies:
             if name in self.machine.payload["bodies"]:
                 return self.curve_of_body(name)
         return address("driver", self.loads[0], "effort") if self.loads else self.curve
@@ -294,6 +294,12 @@ class Sentences:
         ]
         most = max(joints, key=lambda name: float(happening(self.motion, name).max()), default="")
         return address("joint", most) if most else ""
+
+
+def is_of(insight: Insight, kinds: tuple[str, ...]) -> bool:
+    """Return True if an insight is of one of some kinds of insights."""
+    kind = insight.kind
+    return kind in kinds
 
 
 def prose(text: str) -> str:

@@ -87,7 +87,7 @@ class _Steps(Sentences):
         first: dict[str, Insight] = {}
         for each in machine.insights:
             first.setdefault(each.kind, each)
-        self.insights = list(first.values())
+        self.by_kind, self.insights = first, list(first.values())
         moving = [each for kind, each in first.items() if kind in MOTION]
         self.tricks = moving[: MOST["trick"]]
         self.ways = [*moving[MOST["trick"] :], *(each for kind, each in first.items() if kind in WAYS)]
@@ -142,7 +142,7 @@ class _Steps(Sentences):
 
     def limit(self) -> Iterator[str]:
         """Yield dead points, angles and lengths beyond which it jams; else that there are none."""
-        rows = [each for each in self.insights if each.kind in LIMITS]
+        rows = [each for kind, each in self.by_kind.items() if kind in LIMITS]
         yield from self.paragraphs(rows[: MOST["limit"]])
         margin = np.asarray(self.motion.diagnostics.singularity_margin)
         if rows or not margin.size:

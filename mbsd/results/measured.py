@@ -40,6 +40,8 @@ class Moved:
     """(T, n) how fast the contact of each interaction approached when it began (m/s), where one asks for it."""
     states: np.ndarray | None = None
     """(T, n) of all forces that carry states (SI); None: none does."""
+    pairs: np.ndarray | None = None
+    """(T, o) pairs of outlines that touched; None without outlines."""
 
 
 def measured(packed: Packed, element: Element, i: int, j: int, q: np.ndarray) -> np.ndarray:

@@ -252,8 +252,9 @@ class Solution(Suggesting, Generic[AnyModel]):
         span = self.span or (float(self.t[0]), float(self.t[-1]))
         times = self.t if self.law_times is None else self.law_times
         moved = Moved(
-            self.packed, times, flat_q, flat_v, self.lam, self.held, span, flat_a, self.approached, self.states
-        )
+            self.packed, times, flat_q, flat_v, self.lam, self.held, span, flat_a, self.approached, self.states,
+            self.pairs,
+        )  # fmt: skip
         return force_view(moved, name, self.efforts.get(name))
 
     @property

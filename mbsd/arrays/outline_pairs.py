@@ -56,7 +56,7 @@ def siblings(rows: list[OutlineRow]) -> list[int]:
 
 
 def pair_rows(packed: Packed) -> list[int]:
-    """Return the rows of Workspace.relative whose LAST has the codes of pairs: of each contact, then of its way."""
+    """Return the rows of Workspace.relative whose LAST has the codes of pairs, of contacts and ways."""
     return [at for row in outline_rows(packed) for at in (row.relative, row.way) if at >= 0]
 
 
@@ -64,7 +64,10 @@ def tabulate_pairs(
     packed: Packed, drives: np.ndarray, q: np.ndarray, v: np.ndarray, phi: np.ndarray, compact: np.ndarray,
     gamma: np.ndarray, pairs: np.ndarray | None,
 ) -> None:  # fmt: skip
-    """Tabulate along a motion q, v (T, 3 nb), each row with the pair that it kept, ``pairs`` (T, o); None: none."""
+    """Tabulate along a motion q, v (T, 3 nb), each row with the pair that it kept.
+
+    ``pairs`` (T, o); None: none.
+    """
     rows, relative = pair_rows(packed), packed.ws.relative
     before = relative[rows, LAST].copy()
     codes = np.full((1, len(rows)), math.nan) if pairs is None else np.unique(pairs, axis=0, equal_nan=True)

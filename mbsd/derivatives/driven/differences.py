@@ -1,4 +1,4 @@
-"""Compiled: states beside those of a motion, and how its equations change from one side of it to the other."""
+"""Compiled: states beside those of a motion, and how its equations change between them."""
 
 from __future__ import annotations
 

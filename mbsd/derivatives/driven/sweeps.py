@@ -101,7 +101,7 @@ class SweepTangents:
         return variants.slope(states)
 
     def _loads(self, change: np.ndarray, step: float) -> np.ndarray:
-        """(T, 3 nb) how loads change as states do by ``change`` (T, s) times a number, which goes a step both ways."""
+        """Return how loads (T, 3 nb) change with a number as states do, by ``change`` (T, s)."""
         assert self.along.states is not None
         there, here = (
             self.terms.applied(replace(self.along, states=self.along.states + side * step * change)) for side in (1, -1)
@@ -127,7 +127,10 @@ class SweepTangents:
 def displaced(
     sol: Solution, along: Along, tangent_of: Tangent, variant: Variant, h: float, reactions: bool, **more: Any
 ) -> Solution:
-    """The motion as its tangent has it at another value of a number, h away; without ``reactions`` those are NaN."""
+    """Return the motion as its tangent has it at another value of a number, h away.
+
+    Without ``reactions`` those are NaN.
+    """
     packed, shape = variant.terms.packed, (len(sol.t), -1, 3)
     q, v, a = along.q + h * tangent_of.q, along.v + h * tangent_of.v, along.a + h * tangent_of.a
     lam = along.lam + h * tangent_of.lam

@@ -18,7 +18,7 @@ from mbsd.derivatives.driven.sweeps import displaced, extent
 from mbsd.derivatives.driven.tangents import Tangent, by_numbers, has_kinks
 from mbsd.derivatives.free.explicit_time import find_toggles
 from mbsd.derivatives.free.free_tangents import AT_ONCE, FreeTangents, Stretch, Tangents, joined
-from mbsd.derivatives.free.guards import End, contacts_of, refuse_contact_at_start, shared_least, unshared, ways_of
+from mbsd.derivatives.free.guards import End, contacts_of, refuse_contact_at_start, share_least, unshared, ways_of
 from mbsd.derivatives.free.indexing import held_between, solve_ends, unwatched
 from mbsd.derivatives.free.jumps import Jump, jumps_of
 from mbsd.derivatives.free.linear_motion import LATEST, NODES
@@ -332,7 +332,7 @@ class SimulationTangents:
             elif along.held is not None and len(part.lam[0]) and not dependent:
                 rank = len(self.stretch_rows(part, 0))
                 if rank < along.held[a].sum():
-                    along.a[a:b], along.lam[a:b] = shared_least(self.terms, part, compact[a:b], rank)
+                    along.a[a:b], along.lam[a:b] = share_least(self.terms, part, compact[a:b], rank)
             out.append(ways)
         return out
 

@@ -137,7 +137,7 @@ def draw_on(
         name = outline.body.name
         with canvas.on(on_body(name)):
             path, ink = _outline_path(pose, outline), colours.get(name, QUIET)
-            if outline.hole:
+            if outline.is_hole:
                 canvas.line(path, ink, 1.5, order=2)
             else:
                 canvas.shape(path, edge=ink, fill=ink, width=1.5, order=2, alpha=0.16)

@@ -34,7 +34,7 @@ Motion = tuple[np.ndarray, np.ndarray, np.ndarray]
 """q, v, a (T, 3 nb)."""
 
 
-def close_times(packed: Packed, t: np.ndarray, solve: Callable[[np.ndarray], Motion]) -> np.ndarray:
+def refine_times(packed: Packed, t: np.ndarray, solve: Callable[[np.ndarray], Motion]) -> np.ndarray:
     """Return the times t (T,) of a motion (s) and others, so near that quintics between them miss no pose.
 
     ``solve`` gives the motion at rising times, which begin with t[0].
@@ -56,7 +56,7 @@ def close_times(packed: Packed, t: np.ndarray, solve: Callable[[np.ndarray], Mot
 def states_along(packed: Packed, t: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray | None:
     """Return (T, n) states (SI) along a motion q, v, a (T, 3 nb) at times (T,); None without states.
 
-    Times rise, and are near each other (``close_times``).
+    Times rise, and are near each other (``refine_times``).
 
     Raises SimulationError where they grow without bound.
     """

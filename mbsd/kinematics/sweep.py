@@ -25,7 +25,7 @@ from mbsd.kinematics.march import March, march_along
 from mbsd.kinematics.multipliers import Efforts, inverse_dynamics, singularity_margin
 from mbsd.kinematics.period import MOST_TURNS, common_period, repetition
 from mbsd.kinematics.prepared import Prepared, prepare, prepare_beside
-from mbsd.kinematics.states_along import Motion, close_times, states_along
+from mbsd.kinematics.states_along import Motion, refine_times, states_along
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import equal_times, rising_times
 from mbsd.results.measured import check_states
@@ -160,7 +160,7 @@ def _states(ready: Prepared, march: March, times: np.ndarray, q: np.ndarray) -> 
         motion = march_along(ready, every, march.switch_at)
         return motion.q, motion.v, motion.a
 
-    close = close_times(ready.packed, times, solve)
+    close = refine_times(ready.packed, times, solve)
     states = states_along(ready.packed, close, *solve(close))
     assert states is not None
     states = states[np.searchsorted(close, times)]

@@ -205,7 +205,7 @@ def _force(m: Model, force: Force) -> dict[str, Any]:
 
 def _outline(outline: Outline) -> dict[str, Any]:
     corners = [list(corner) for corner in outline.corners]
-    return {"body": outline.body.name, "corners": corners, "hole": outline.hole}
+    return {"body": outline.body.name, "corners": corners, "hole": outline.is_hole}
 
 
 def _state(state: Any) -> dict[str, Any]:

@@ -49,7 +49,7 @@ def run(name: str) -> None:
 
 
 def author_file(name: str) -> Path:
-    """Return the file in which an author says it in his own words: article.md, or excavator.md of excavator.py."""
+    """Return the file of an author's own text: article.md, or excavator.md of excavator.py."""
     return mechanism_folder(name) / (f"{owner_of(name)}.md" if is_single_file(name) else "article.md")
 
 
@@ -62,7 +62,10 @@ def _stage(out: Out) -> Stage:
         if not path.is_file():
             raise UserError(f"{out.name}: {path} is missing; run {to_run(target, out.name)} first")
     if is_in_space(out.motion):
-        raise UserError(f"{out.name} moves in space; articles are of mechanisms in the plane, and films show both")
+        raise UserError(
+            f"{out.name} moves in space, and an article explains mechanisms in the plane alone; "
+            f"open its page: {to_run('view', out.name)}"
+        )
     beside = [author_file(out.name), mechanism_file(out.name), out.parts, out.shot, out.designs, *clearance_files(out)]
     motions = [path for variant in variants_of(out).values() for path in (variant.motion, variant.skeleton)]
     there = [path for path in (*beside, *motions) if path.is_file()]

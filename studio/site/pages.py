@@ -22,7 +22,7 @@ from shared.stage.console import warn
 from shared.stage.files import sources_hash, whole_file, write_bytes
 from shared.stage.paths import ROOT, Out
 from shared.stage.stages import Stage, key_of
-from studio.site.designs.stage import SOURCES, stage_of
+from studio.site.designs import SOURCES, stage_of
 from studio.site.entries import Entry
 
 # Short silent film on the wall: from the mechanism's film, else from its moving skeleton.

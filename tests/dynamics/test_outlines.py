@@ -331,8 +331,8 @@ def test_the_wrong_way_round_is_turned() -> None:
     m = Mechanism("turned")
     first, second = m.outline(m.body("a"), SQUARE), m.outline(m.body("b"), SQUARE[::-1])
     assert first.area == second.area == 1.0
-    assert not second.hole
-    assert m.outline("a", SQUARE, hole=True).hole
+    assert not second.is_hole
+    assert m.outline("a", SQUARE, hole=True).is_hole
 
 
 def test_outlines_of_one_body_and_missing_ones_are_refused() -> None:

@@ -18,7 +18,7 @@ from mbsd.derivatives.refused_motions import refuse_parted
 from mbsd.kinematics.march import march_along
 from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.prepared import prepare
-from mbsd.kinematics.states_along import Motion, close_times, states_along
+from mbsd.kinematics.states_along import Motion, refine_times, states_along
 from mbsd.kinematics.sweep import sweep
 from mbsd.model.mechanism import Model
 from mbsd.numbers.names import Number
@@ -117,7 +117,7 @@ class SweepTangents:
             march = march_along(ready, times)
             return march.q, march.v, march.a
 
-        times = close_times(self.sol.packed, self.t, solve)
+        times = refine_times(self.sol.packed, self.t, solve)
         if len(times) == len(self.t):
             return self.along, self.inverse
         along = along_of(sweep(self.m, None, 1, times))

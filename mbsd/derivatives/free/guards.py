@@ -153,7 +153,7 @@ def unshared(terms: Terms, along: Along, compact: np.ndarray, ways: Sequence[int
     return lam
 
 
-def shared_least(terms: Terms, along: Along, compact: np.ndarray, rank: int) -> tuple[np.ndarray, np.ndarray]:
+def share_least(terms: Terms, along: Along, compact: np.ndarray, rank: int) -> tuple[np.ndarray, np.ndarray]:
     """Return accelerations (T, 3 nb) and the least multipliers (T, m) of a stretch whose rows repeat each other.
 
     ``rank`` of the rows that hold are independent. A simulation shares loads among a choice of them, which grow without

@@ -33,7 +33,7 @@ from mbsd.dynamics.reference.sliding import sliding_for
 from mbsd.dynamics.switches import Switches, friction_rows, joint_sticks, stuck_rows
 from mbsd.kinematics.limits.contacts import all_contacts, with_contacts
 from mbsd.kinematics.pose.initial import Initial, consistent
-from mbsd.kinematics.pose.mobility import clear_rows, joint_mobility, rows_at
+from mbsd.kinematics.pose.mobility import choose_clear_rows, joint_mobility, rows_at
 from mbsd.model.mechanism import Model
 from mbsd.results.measured import measured, measured_rate
 from mbsd.results.views import Mobility
@@ -217,7 +217,7 @@ def _inverse(inertia: np.ndarray) -> np.ndarray:
 def _rows(packed: Packed, q: np.ndarray) -> tuple[list[int], Mobility]:
     """Independent rows, those of joints before those of drivers."""
     mobility = joint_mobility(packed, q)
-    return clear_rows(packed, q, rows_at(packed, q)), mobility
+    return choose_clear_rows(packed, q, rows_at(packed, q)), mobility
 
 
 def _refuse_superfluous_drivers(packed: Packed, mobility: Mobility) -> None:

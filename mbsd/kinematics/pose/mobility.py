@@ -153,10 +153,10 @@ def _chosen(packed: Packed, q: np.ndarray, time: float, joints: Mobility) -> lis
             f"{packed.name}: the start pose at t = {time:.6g} s is singular (a toggle or change point): "
             "the drivers do not fix the motion here. Start a little before or after it, or drive another body."
         )
-    return clear_rows(packed, q, kept)
+    return choose_clear_rows(packed, q, kept)
 
 
-def clear_rows(packed: Packed, q: np.ndarray, kept: list[int]) -> list[int]:
+def choose_clear_rows(packed: Packed, q: np.ndarray, kept: list[int]) -> list[int]:
     """Return ``kept`` rows at q (3 nb,), or others in their place where they alone are near a toggle.
 
     Joints that repeat each other let a choice of rows be singular at a pose at which all of them are not.

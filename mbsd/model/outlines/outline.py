@@ -52,7 +52,7 @@ class Outline:
     """(x, y, bulge) in the axes of the body (m), counter-clockwise; clockwise of a hole."""
 
     @property
-    def hole(self) -> bool:
+    def is_hole(self) -> bool:
         """True if matter is outside."""
         return signed_area(self.corners) < 0.0
 

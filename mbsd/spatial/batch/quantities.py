@@ -43,7 +43,7 @@ class Quantity:
 
 
 def quantity_named(m: Any, name: str) -> Quantity:
-    """Return the quantity of this name. Raises ModelError for one that there is not."""
+    """Return the quantity of this name. Raises ModelError for an unknown name."""
     whole, _, part = name.rpartition(".")
     if name == "t":
         return Quantity(name, lambda sol: sol.t)

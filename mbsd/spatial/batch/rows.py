@@ -44,7 +44,7 @@ NONE = np.zeros(0)
 
 
 class NotPatched(Exception):
-    """Why simulations are made one by one."""
+    """Rows of a batch cannot share one block of numbers; the message says why."""
 
 
 class Parts(NamedTuple):

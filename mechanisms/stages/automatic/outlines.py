@@ -107,7 +107,7 @@ def _solids(m: Mechanism, body: str, mates: frozenset[str], layout: Layout) -> l
     places = [layout.place(marker) for marker in joints]
     solids: list[OutlineSolid] = []
     for outline in (outline for outline in m.outlines.values() if outline.body.name == body):
-        if outline.hole:
+        if outline.is_hole:
             raise UserError(
                 f"{m.name}: outline '{outline.name}' is a hole, which has no automatic parts yet; write "
                 f"{shown_file(m.name, 'parts')}"

@@ -10,7 +10,7 @@ import argparse
 from shared.stage.console import run_cli, say
 from shared.stage.files import write_bytes
 from shared.stage.paths import Out, known_name
-from studio.site.designs.stage import stage_of
+from studio.site.designs import stage_of
 
 
 def main() -> int:

@@ -16,7 +16,7 @@ from shared.stage.stages import contract_sources, key_of
 if TYPE_CHECKING:
     from render.film.film import Film
 
-SHARED = ("clearance", "geometry", "materials", "quantity", "shot", "signals")
+SHARED = ("clearance", "geometry", "links", "materials", "quantity", "quaternions", "shot", "signals")
 """Files of shared/contract/, beside those of motion and parts, that decide what is seen."""
 STAGE_OF = {"motion": "solve", "parts": "parts", "shot": "run"}
 

@@ -63,7 +63,7 @@ SCHEMATIC = "`mbsd parts` says what is in the way"
 PACKAGES = ("manifold3d", "numpy")
 SOURCES = [
     *(ROOT / "mechanisms" / "stages" / name for name in ("clearance", "parts_files.py")),
-    *contract_sources("clearance", "geometry"),
+    *contract_sources("clearance", "geometry", "links", "quaternions"),
 ]
 
 

@@ -152,5 +152,5 @@ def test_without_parts_it_says_so_and_without_a_motion_or_in_space_it_is_refused
     machine = Machine("four_bar", "", read_motion(out.motion), read_payload(out))
     assert steps_of(machine)[-1].paragraphs == ["It has no solid parts here; `mbsd parts four_bar` makes them."]
     out.motion.write_text('{"schema": "mbsd.motion", "space": 3}')
-    with pytest.raises(UserError, match="four_bar moves in space, and an article explains mechanisms in the plane alone"):
+    with pytest.raises(UserError, match="four_bar moves in space, and an article explains mechanisms in the plane"):
         article.run("four_bar")

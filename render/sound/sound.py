@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from render.film.clock import TimeMap
 from render.film.film import Film
 from render.sound.desk import Desk, Spectrum
-from render.sound.mix import mixed
+from render.sound.mix import LOUDNESS, energies, mixed
 from render.sound.setting import RATE, Setting
 from render.sound.sources import gas, impacts, knocks, mesh, motor, sliding, springs
+from render.sound.waves import rfft
 
 # The sound of a whole film.
 
@@ -41,20 +42,36 @@ def sound_of(film: Film, time_map: TimeMap | None = None) -> Array:
 
 BED, FADE = -9.0, 0.3
 """dB: level of the machine under pictures whose time stands, beside that in motion; seconds in which it comes."""
+EVEN, MOST = 3000, 12.0
+"""ms over which that level is kept even, and the gain that this takes at most (dB)."""
 
 
 def sound_of_story(film: Film, time_map: TimeMap) -> Array:
     """Return (2, n) the sound of a story at 48 kHz, 1 being full scale.
 
-    Where its time stands the machine is heard from afar, as it runs in its film, so that no silence breaks off.
+    Where its time stands the machine is heard from afar, as it runs in its film, so that no silence breaks off. A
+    passage that is quiet in the film is not, there: the next picture would begin with a bang.
     """
-    wave, ring = sound_of(film, time_map), sound_of(film)
+    wave, ring = sound_of(film, time_map), _evened(sound_of(film))
     count, step = wave.shape[1], RATE // 100
     stands = (time_map.moments_at(np.arange(0, count, step) / RATE)[1] == 0.0).astype(float)
     bell = np.hanning(round(FADE * 100) + 2)[1:-1]
     stands = np.convolve(np.pad(stands, len(bell) // 2, mode="edge"), bell / bell.sum(), mode="valid")
     level = 10 ** (BED / 20) * np.interp(np.arange(count), step * np.arange(len(stands)), stands)
     return wave + level * np.take(ring, np.arange(count) % ring.shape[1], axis=1)
+
+
+def _evened(ring: Array) -> Array:
+    """Return a ring (2, n) whose loudness is that of a whole film wherever it is measured over EVEN."""
+    count = ring.shape[1]
+    energy = energies(rfft(ring), count)
+    width = min(EVEN, len(energy))
+    sums = np.concatenate([[0.0], np.cumsum(np.tile(energy, 3))])
+    first = len(energy) + np.arange(len(energy)) - width // 2
+    around = (sums[first + width] - sums[first]) / width
+    wanted = 10 ** ((LOUDNESS + 0.691) / 10)
+    gain = np.clip(np.sqrt(wanted / np.maximum(around, 1e-30)), 10 ** (-MOST / 20), 10 ** (MOST / 20))
+    return ring * np.interp(np.arange(count), (np.arange(len(gain)) + 0.5) * (count / len(gain)), gain, period=count)
 
 
 def stems_of(setting: Setting) -> dict[str, Spectrum]:

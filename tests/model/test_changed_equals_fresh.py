@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, ModelError, constant_rate, curve, harmonic, pressure_table, two_stroke
+from mbsd import Mechanism, ModelError, circle, constant_rate, curve, harmonic, pressure_table, two_stroke
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
 from mbsd.model import plane_curves
@@ -85,6 +85,9 @@ OTHERS: dict[str, list[Any]] = {
     "radius": [0.17, None],
     "radius_i": [0.6, None],
     "radius_j": [0.15, None],
+    "outline_i": [circle(29.0, (-30.0, 0.1))],
+    "outline_j": [circle(0.6, (0.2, 0.1)), [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.2)]],
+    "runs": [[0]],
     "friction": [0.6, 0.1, 0.0],
     "coefficient": [0.8, 0.1],
 }

@@ -21,6 +21,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from mbsd.base.arguments import whole_number
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such, shown
 from mbsd.model.body import Body, Marker
@@ -84,9 +85,11 @@ def outline_touch(
     what = f"{m.name}: contact '{name}'"
     both = [plain_outline(f"{what}: outline_{key}", corners) for key, corners in (("i", outline_i), ("j", outline_j))]
     known = len(runs_of(tuples_of(both[1])))
-    if not isinstance(runs, Sequence) or not runs or any(not 0 <= int(run) < known for run in runs):
+    given = runs if isinstance(runs, Sequence) else [runs]
+    chosen = [whole_number(f"{what}: runs[{k}]", run, 0) for k, run in enumerate(given)]
+    if not chosen or max(chosen) >= known:
         raise ModelError(f"{what}: runs are {shown(runs)}; outline j has runs 0 to {known - 1}")
-    params: dict[str, Any] = {"outline_i": both[0], "outline_j": both[1], "runs": [int(run) for run in runs]}
+    params: dict[str, Any] = {"outline_i": both[0], "outline_j": both[1], "runs": chosen}
     params |= {"second": bool(second), "arcs": bool(arcs)}
     params |= frictions_given(m, name, friction, static_friction)
     return add_contact(m, OUTLINE_TOUCH, name, i, j, restitution, params)
@@ -96,7 +99,7 @@ def plain_outline(what: str, corners: Any) -> list[list[float]]:
     """Return corners as plain data, in their order. Raises ModelError for what is no outline."""
     try:
         hole = signed_area(tuples_of(corners)) < 0.0
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, IndexError):
         hole = False
     return [list(corner) for corner in checked_corners(what, corners, hole, None)]
 

@@ -47,8 +47,8 @@ OUTLINE_FORCE = register_force(
         "outline_force",
         interactions=_interactions,
         example=lambda m, i, j: m.outline_force(
-            "example", i, j, circle(30.0, (-30.0, 0.0)), circle(4.0, (0.1, 0.2)), 500.0, damping=0.02, friction=0.4,
-            slip_speed=0.5,
+            "example", i, j, circle(30.0, (-30.0, 0.0)), circle(4.0, (0.1, 0.2)), 50.0, damping=0.02, friction=0.4,
+            slip_speed=5.0,
         ),
     )
 )  # fmt: skip

@@ -60,6 +60,13 @@ def _takes(setting: Setting, power: list[float]) -> bool:
     return given < -TAKEN * all_of_it
 
 
+def _speed(time: Array, value: Array) -> Array:
+    """Return (T,) the size of the rate of a value; where it jumps, that before and after."""
+    steps = np.diff(time)
+    rate = np.abs(np.diff(value)) / np.where(steps > 0, steps, np.inf)
+    return np.maximum(np.append(rate, rate[-1]), np.insert(rate, 0, rate[0]))
+
+
 def _motor(setting: Setting, desk: Desk, value: Array, effort: Array, turns: bool, bodies: tuple[str, str]) -> None:
     screw = math.tau if turns else max(float(np.ptp(value)) / 100, 1e-9)
     way = setting.continued(setting.series(value) / screw)
@@ -69,7 +76,7 @@ def _motor(setting: Setting, desk: Desk, value: Array, effort: Array, turns: boo
         return
     ratio = float(SERIES[np.abs(np.log(SERIES * fastest / ROTOR)).argmin()])
     moves = setting.rate > 0
-    own = np.where(moves, speed * screw / np.where(moves, setting.rate, 1.0), 0.0)  # as the machine goes
+    own = setting.series(_speed(setting.time, value)) * moves  # as the machine goes
     weight = 9.81 * sum(body.mass for body in setting.motion.bodies.values())
     load = np.abs(setting.series(effort)) + IDLE * weight * (setting.film.size if turns else 1.0)
     level = of_power(load * (own + REST * float(np.quantile(own, 0.98)) * moves), EFFICIENCY)

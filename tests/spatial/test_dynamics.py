@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from mbsd.base.errors import InitialConditionWarning, MobilityError, ModelError
+from mbsd.measures import samples
 from mbsd.spatial import Mechanism, constant_rate
 from mbsd.spatial.model.rotation import rotation_matrix
 from tests.spatial import machines
@@ -203,6 +204,26 @@ def test_what_cannot_be_simulated_is_refused() -> None:
         m.start_moving({"rdo": 3.0})
     with pytest.raises(ModelError, match="tolerance is -1"):
         m.simulate(duration=1.0, tolerance=-1.0)
+
+
+def test_a_thrown_body_starts_with_the_velocity_of_its_frame() -> None:
+    m = Mechanism("throw", gravity=(0, 0, -9.81))
+    moments = ((0.05, 0.01, 0.0), (0.01, 0.08, 0.002), (0.0, 0.002, 0.06))
+    m.body("stick", 2.0, (0.1, 0.2, -0.3), moments, at=(1, 2, 3), orientation=(0.5, 0.3, -0.2, 0.7))
+    v, w, t = np.array([1.0, -2.0, 4.0]), np.array([0.5, 3.0, -1.0]), np.linspace(0.0, 0.4, 5)
+    m.start_moving({"stick": [*v, *w]})
+    stick = m.simulate(times=t).body("stick")
+    np.testing.assert_allclose(stick.velocity[0], v, atol=1e-12)
+    np.testing.assert_allclose(stick.w[0], w, atol=1e-12)
+    middle = stick.place + stick.rotation @ np.array([0.1, 0.2, -0.3])
+    thrown = v + np.cross(w, middle[0] - stick.place[0])
+    np.testing.assert_allclose(middle, middle[0] + np.outer(t, thrown) - np.outer(t**2, [0, 0, 9.81 / 2]), atol=1e-9)
+    many = m.simulate_many(
+        times=t, moving={"stick": [[*v, *w], [*(2 * v), *w]]}, measure={"vx": samples("stick.vx", [0.0])}
+    )
+    np.testing.assert_allclose(np.ravel(many["vx"]), [1.0, 2.0], atol=1e-12)
+    with pytest.raises(ModelError, match=r"start velocity of 'stick'.*\(vx, vy, vz, wx, wy, wz\)"):
+        m.start_moving({"stick": (1.0, 2.0)})
 
 
 def test_a_start_that_joints_forbid_is_changed_with_a_warning() -> None:

@@ -36,7 +36,7 @@ from mbsd.derivatives.numbers.terms import Along, Change, Left, Terms, stacked
 from mbsd.derivatives.numbers.variants import Variants
 from mbsd.kinematics.pose.mobility import better_rows
 
-REACH = 1e-5
+REACH = 3e-6
 """How far differences along a direction go: sizes, rad, parts of the fastest speed."""
 SLIGHT = 1e-3
 """Changes of the motion below this, in sizes, rad, and parts of the fastest speed, count as small."""

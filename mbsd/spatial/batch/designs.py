@@ -2,7 +2,7 @@
 
 vary={"twist": {"stiffness": [...]}, "top": {"inertia": [...]}}      arguments of m.change, (n,) or (n, k)
 start={"hinge": [...]}     as m.start_near: degrees, m (n,)
-moving={"hinge": [...], "top": [...]}     as m.start_moving: rad/s, m/s (n,), of a body (n, 3)
+moving={"hinge": [...], "top": [...]}     as m.start_moving: rad/s, m/s (n,), of a body (n, 3) or (n, 6)
 """
 
 from __future__ import annotations

@@ -12,6 +12,7 @@ import numpy as np
 from mbsd.kinematics.pose.held_values import held_values
 from mbsd.spatial.arrays.packing import Packed, pack, start_row
 from mbsd.spatial.model.mechanism import Model
+from mbsd.spatial.model.rotation import rotation_matrix
 
 REPORTED = 1e-6
 """Least change of a given value that is reported, relative to the largest."""
@@ -67,10 +68,18 @@ def _given(m: Model, q: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[tuple[
             values.append(value[0])
             names.append((f"the rate of '{name}'", "rad/s" if joint.kind.turns else "m/s"))
             continue
-        for k, part in enumerate(value):
-            row = np.zeros(width)
-            row[6 * number[name] - 3 + k] = 1.0
-            rows.append(row)
-            values.append(part)
-            names.append((f"w{'xyz'[k]} of '{name}'", "rad/s"))
+        b = number[name]
+        turns = np.zeros((3, width))
+        turns[:, 6 * b - 3 : 6 * b] = np.eye(3)
+        names += [(f"v{axis} of '{name}'", "m/s") for axis in "xyz"[: len(value) - 3]]
+        names += [(f"w{axis} of '{name}'", "rad/s") for axis in "xyz"]
+        if len(value) > 3:  # of the frame: that of the centre of mass, and w x arm
+            body = m.bodies[name]
+            x, y, z = -rotation_matrix(q[7 * b - 1 : 7 * b + 3]) @ body.principal[1].T @ np.array(body.com)
+            moves = np.zeros((3, width))
+            moves[:, 6 * b - 6 : 6 * b - 3] = np.eye(3)
+            moves[:, 6 * b - 3 : 6 * b] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
+            rows += [*moves]
+        rows += [*turns]
+        values += value
     return np.array(rows).reshape(-1, width), np.array(values), names

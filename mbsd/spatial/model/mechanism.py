@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.base.arguments import finite_number, positive_number
+from mbsd.base.arguments import finite_number, positive_number, several_numbers
 from mbsd.base.errors import ModelError
 from mbsd.base.names import Named, Suggesting, no_such, shown
 from mbsd.model.event import Event
@@ -56,7 +56,8 @@ class Model(Suggesting):
     starts: dict[str, float] = field(default_factory=dict)
     """Turns (rad) and slides (m) of joints at the start, by name."""
     velocities: dict[str, tuple[float, ...]] = field(default_factory=dict)
-    """Rates of joints (rad/s or m/s) and angular velocities of bodies (rad/s, in the world) at the start, by name."""
+    """Rates of joints (rad/s or m/s) and of bodies at the start, by name: (wx, wy, wz) (rad/s, in the world), or
+    (vx, vy, vz, wx, wy, wz) with the velocity of their frames (m/s)."""
 
     calls: list[Any] = field(default_factory=list, repr=False)
     """Calls of the methods that built it (journal.py), by which it is changed and saved."""
@@ -187,10 +188,11 @@ class Model(Suggesting):
             self.starts[name] = math.radians(number) if kind.turns else number
 
     def start_moving(self, values: Mapping[str, float | Sequence[float] | np.ndarray] | None = None) -> None:
-        """Start a simulation with joints at a rate (rad/s or m/s), or bodies at an angular velocity.
+        """Start a simulation with joints at a rate (rad/s or m/s), or bodies at velocities.
 
-        A body takes three numbers (wx, wy, wz) in the world (rad/s). All else moves as joints and drivers make it, with
-        little kinetic energy. What they forbid is changed, and the simulation warns.
+        A body takes its angular velocity (wx, wy, wz) in the world (rad/s), or (vx, vy, vz, wx, wy, wz) with the
+        velocity of its frame (m/s) before it. All else moves as joints and drivers make it, with little kinetic energy.
+        What they forbid is changed, and the simulation warns.
         """
         for name, value in (values or {}).items():
             what = f"{self.name}: start velocity of '{name}'"
@@ -200,7 +202,10 @@ class Model(Suggesting):
                     raise ModelError(f"{what}: a {kind.name} joint has neither turn nor slide; name one that has")
                 self.velocities[name] = (finite_number(what, value),)
             elif name in self.bodies:
-                self.velocities[name] = place_given(what, value)
+                count = 6 if isinstance(value, Sequence | np.ndarray) and len(value) == 6 else 3
+                self.velocities[name] = several_numbers(
+                    what, value, count, "give (wx, wy, wz) in rad/s, or (vx, vy, vz, wx, wy, wz)"
+                )
             else:
                 raise ModelError(f"{self.name}: {no_such('joint or body', name, [*self.joints, *self.bodies])}")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -20,6 +21,7 @@ from mechanisms.scissor_lift import mechanism as lift
 from mechanisms.slider_crank import mechanism as slider_crank
 from mechanisms.stages.solve import stage as solve_stage
 from mechanisms.stages.solve.motion_file import to_motion
+from mechanisms.walschaerts import mechanism as walschaerts
 from mechanisms.windshield_wiper import mechanism as wiper
 from render.report.loads import load_section
 from shared.contract.quantity import written
@@ -311,3 +313,23 @@ def test_without_muscles_the_bicycle_drives_the_leg_and_gets_all_of_it_back() ->
     p = leg.Params(**leg.VARIANTS["no_muscles"])
     power = leg.build(p).sweep().driver("bicycle").power
     assert abs(np.trapezoid(power)) < 1e-6 * np.trapezoid(np.abs(power))
+
+
+def test_walschaerts_gear_keeps_its_lead_and_cuts_off_earlier_as_it_is_linked_up() -> None:
+    """The lead is that of the lever at any gear; cut-offs are those of Zeuner's diagram; astern steam works against."""
+    p = walschaerts.Params()
+    works = []
+    for gear in (p.gear, 0.6 * p.gear, -p.gear):
+        sol = walschaerts.build(replace(p, gear=gear)).sweep(1.0, steps=720)
+        valve, piston, steam = sol.body("valve").x, sol.body("piston").x, sol.force("steam")
+        ends = np.interp([math.pi, 2 * math.pi], sol.body("crank").theta, valve)  # of the piston's travel
+        assert ends[0] - ends[1] == pytest.approx(2 * p.crank * 0.022 / 0.14, rel=0.01)
+        late = sol.t >= 0.5
+        works.append(np.trapezoid(steam.power[late], sol.t[late]))
+        if gear > 0.0:
+            cut = next(t for t, what in steam.valve_events if t > 0.25 and what == "cut-off A")
+            share = (np.interp(cut, sol.t, piston) - piston.min()) / (2 * p.crank)
+            lead, swing = p.crank * 0.022 / 0.14, p.eccentric * gear / 0.055 * 0.162 / 0.14
+            turned = math.atan2(swing, lead) + math.acos(p.lap / math.hypot(lead, swing))
+            assert share == pytest.approx((1 - math.cos(turned)) / 2, abs=0.02)
+    assert works[0] > works[1] > 0.0 > works[2]

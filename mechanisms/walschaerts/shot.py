@@ -1,0 +1,5 @@
+"""The valve gear is filmed in the studio."""
+
+from shared.shot import Shot
+
+shot = Shot(look="studio")

@@ -41,8 +41,9 @@ def force(numbers, state, out):
         skip_run = -1
         skip = -1
         foot = 0.0
+        within = numbers[features.NOWHERE]
         for _ in range(2):
-            _, feature, gap = features.search(numbers, state, run, run + 1, skip_run, skip, foot)
+            _, feature, gap = features.search(numbers, state, run, run + 1, skip_run, skip, foot, within)
             if feature < 0:
                 break
             end = int(state[features.USED_END])
@@ -57,6 +58,7 @@ def force(numbers, state, out):
                     place = feature
                     place_run = run
                     place_end = end
+                within = 0.0  # of a second place only that it pushes matters
             if numbers[features.SECOND] == 0.0:
                 break
             skip_run = run

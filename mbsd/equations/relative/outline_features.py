@@ -306,10 +306,11 @@ def _follow(numbers, relative, run, feature):
 
 
 @internal
-def search(numbers, relative, first, end, skip_run, skip, skip_foot):
-    """Return run, feature and gap of the nearest pair of runs ``first`` to ``end``, -1 without any.
+def search(numbers, relative, first, end, skip_run, skip, skip_foot, within):
+    """Return run, feature and gap of the nearest pair of runs ``first`` to ``end``, -1 without any ``within`` (m).
 
-    Where run ``skip_run`` has a place on feature ``skip``, that is skipped.
+    Where run ``skip_run`` has a place on feature ``skip``, that is skipped. Circles around runs and features tell which
+    pairs are too far apart; the feature whose circle is nearest is looked at first and narrows that.
     """
     count = int(numbers[FEATURES])
     c = math.cos(relative[A])
@@ -317,40 +318,68 @@ def search(numbers, relative, first, end, skip_run, skip, skip_foot):
     best_run = -1
     best = -1
     end_used = FACES
-    least = numbers[NOWHERE]
+    least = within
     for run in range(first, end):
         row = run_at(numbers, run)
         mx = relative[X] + c * numbers[row + RUN_X] - s * numbers[row + RUN_Y]
         my = relative[Y] + s * numbers[row + RUN_X] + c * numbers[row + RUN_Y]
+        likely = -1
+        nearest = math.inf
         for feature in range(count):
-            f = feature_at(numbers, feature)
-            reach = numbers[row + RUN_REACH] + numbers[f + REACH]
-            ax = mx - numbers[f + CIRCLE_X]
-            ay = my - numbers[f + CIRCLE_Y]
-            if ax * ax + ay * ay > (reach + max(least, 0.0)) ** 2:
+            away = _clear_of(numbers, feature_at(numbers, feature), row, mx, my)
+            if away < nearest and not (run == skip_run and feature == skip):
+                nearest = away
+                likely = feature
+        if nearest > max(least, 0.0) + numbers[MORE]:
+            continue
+        limit, _ = _pair_gap(numbers, relative, run, likely, skip_run, skip, skip_foot, least)
+        for feature in range(count):
+            near = max(min(limit, least), 0.0) + numbers[MORE]
+            if _clear_of(numbers, feature_at(numbers, feature), row, mx, my) > near:
                 continue
             if run == skip_run and feature == skip:
                 continue
-            for choice in range(1 if _is_corner(numbers, row) or numbers[row + CLOSED] != 0.0 else 3):
-                gap = stand(numbers, relative, run, f, choice)
-                if choice == FACES and relative[FACING] == 0.0:
-                    continue
-                if gap <= -numbers[DEEPEST] or not _is_on(numbers, relative, feature):
-                    continue
-                if _passes_corner(numbers, relative, run, feature, choice):
-                    continue
-                side = APART
-                if run == skip_run:
-                    side = _side_of(numbers, relative, feature, skip, skip_foot)
-                if side != SAME and gap < least and (gap >= 0.0 or _is_in(numbers, relative, feature, gap)):
-                    least = gap
-                    best_run = run
-                    best = feature
-                    end_used = choice
-                if choice == FACES:
-                    break
+            gap, choice = _pair_gap(numbers, relative, run, feature, skip_run, skip, skip_foot, least)
+            if gap < least:
+                least = gap
+                best_run = run
+                best = feature
+                end_used = choice
     relative[USED_END] = end_used
     return best_run, best, least
+
+
+@internal
+def _clear_of(numbers, f, row, mx, my):
+    """Return how far the circle around a run, about (mx, my), is from that around a feature (m)."""
+    x = mx - numbers[f + CIRCLE_X]
+    y = my - numbers[f + CIRCLE_Y]
+    return math.sqrt(x * x + y * y) - numbers[row + RUN_REACH] - numbers[f + REACH]
+
+
+@internal
+def _pair_gap(numbers, relative, run, feature, skip_run, skip, skip_foot, least):
+    """Return the gap of a run from a feature and what of the run is used; ``least`` where it is no less."""
+    row = run_at(numbers, run)
+    f = feature_at(numbers, feature)
+    end_used = FACES
+    for choice in range(1 if _is_corner(numbers, row) or numbers[row + CLOSED] != 0.0 else 3):
+        gap = stand(numbers, relative, run, f, choice)
+        if choice == FACES and relative[FACING] == 0.0:
+            continue
+        if gap <= -numbers[DEEPEST] or not _is_on(numbers, relative, feature):
+            continue
+        if _passes_corner(numbers, relative, run, feature, choice):
+            continue
+        side = APART
+        if run == skip_run:
+            side = _side_of(numbers, relative, feature, skip, skip_foot)
+        if side != SAME and gap < least and (gap >= 0.0 or _is_in(numbers, relative, feature, gap)):
+            least = gap
+            end_used = choice
+        if choice == FACES:
+            break
+    return least, end_used
 
 
 @internal
@@ -395,13 +424,20 @@ def _is_in(numbers, relative, feature, gap):
         ny = numbers[f + KIND] * wy / length
     x = relative[X] + relative[QX] - relative[CR] * nx
     y = relative[Y] + relative[QY] - relative[CR] * ny
-    least = math.inf
-    off = 0.0
+    away, least = _distances(numbers, f, x, y)
+    off = -least
+    if away < math.inf and -gap <= least:
+        least = -gap  # the same but for rounding, which must not change its sign
+        off = gap
     count = int(numbers[FEATURES])
     for k in range(count):
-        away, corner = _distances(numbers, feature_at(numbers, k), x, y)
-        if k == feature and away < math.inf:
-            away = gap  # the same but for rounding, which must not change its sign
+        other = feature_at(numbers, k)
+        dx = x - numbers[other + CIRCLE_X]
+        dy = y - numbers[other + CIRCLE_Y]
+        near = max(least, -0.5 * gap) + numbers[MORE]
+        if k == feature or math.sqrt(dx * dx + dy * dy) - numbers[other + REACH] > near:
+            continue
+        away, corner = _distances(numbers, other, x, y)
         steps = abs(k - feature)
         if abs(away) < -0.5 * gap and min(steps, count - steps) > 2:
             return False
@@ -452,13 +488,14 @@ def find_pair(numbers, relative):
         skip, _ = _follow(numbers, relative, skip_run, (int(other) - 1) % 4096)
         skip_foot = relative[FOOT]
     elif numbers[SECOND] != 0.0:
-        skip_run, skip, _ = search(numbers, relative, 0, int(numbers[RUNS]), -1, -1, 0.0)
+        skip_run, skip, _ = search(numbers, relative, 0, int(numbers[RUNS]), -1, -1, 0.0, numbers[NOWHERE])
         if skip >= 0:
             stand(numbers, relative, skip_run, feature_at(numbers, skip), int(relative[USED_END]))
             skip_foot = relative[FOOT]
     relative[ROOM] = math.inf
     relative[PLACE] = 0.0
-    run, feature, gap = search(numbers, relative, 0, int(numbers[RUNS]), skip_run, skip, skip_foot)
+    within = numbers[NOWHERE]
+    run, feature, gap = search(numbers, relative, 0, int(numbers[RUNS]), skip_run, skip, skip_foot, within)
     if feature < 0:
         return -1, numbers[NOWHERE]
     gap = stand(numbers, relative, run, feature_at(numbers, feature), int(relative[USED_END]))

@@ -45,6 +45,7 @@ SLOW = {
     *("bicycle_leg", "four_bar_bicycle", "four_bar_motor", "jansen_leg", "pantograph", "peaucellier", "scissor_lift"),
     *("inverse_slider_crank", "quick_return", "rotating_constraint", "slider_crank", "swing_table", "toggle_clamp"),
     *("bending_stiffness", "cam_follower_angular", "chain", "double_pendulum", "mass_spring_damper", "moving_pendulum"),
+    *("cycloidal_drive", "ratchet", "walschaerts", "chain_tensioner"),
     *("hip_thrust", "planetary_gear", "rack_steering", "reflective_wall", "vibration_slider_crank", "windshield_wiper"),
     *(
         "flat_four",

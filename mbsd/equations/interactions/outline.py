@@ -58,6 +58,8 @@ def force(numbers, state, out):
                     place = feature
                     place_run = run
                     place_end = end
+                if gap >= 0.0:
+                    break
                 within = 0.0  # of a second place only that it pushes matters
             if numbers[features.SECOND] == 0.0:
                 break

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from mbsd.equations.assembly import tabulate
 from mbsd.equations.relative.equation import ROW
+from mbsd.equations.relative.outline_features import ROOM
 from mbsd.equations.system import LAST
 
 if TYPE_CHECKING:
@@ -68,16 +71,41 @@ def tabulate_pairs(
 
     ``pairs`` (T, o); None: none.
     """
-    rows, relative = pair_rows(packed), packed.ws.relative
-    before = relative[rows, LAST].copy()
-    codes = np.full((1, len(rows)), math.nan) if pairs is None else np.unique(pairs, axis=0, equal_nan=True)
+    count = len(pair_rows(packed))
+    codes = np.full((1, count), math.nan) if pairs is None else np.unique(pairs, axis=0, equal_nan=True)
     for code in codes:
-        relative[rows, LAST] = code
         every = np.ones(len(q), bool) if pairs is None else _alike(pairs, code)
         parts = [np.zeros_like(whole[every]) for whole in (phi, compact, gamma)]
-        tabulate(packed.system, drives[every], q[every], v[every], packed.ws, *parts)
+        with kept_pairs(packed, code):
+            tabulate(packed.system, drives[every], q[every], v[every], packed.ws, *parts)
         phi[every], compact[every], gamma[every] = parts
-    relative[rows, LAST] = before
+
+
+@contextmanager
+def kept_pairs(packed: Packed, code: np.ndarray | None) -> Iterator[None]:
+    """Let rows of outlines keep pairs ``code`` (o,) in what is evaluated within; None: leave them as they are."""
+    rows, relative = [] if code is None else pair_rows(packed), packed.ws.relative
+    before = relative[rows, LAST].copy()
+    relative[rows, LAST] = code if rows else before
+    try:
+        yield
+    finally:
+        relative[rows, LAST] = before
+
+
+def room_at(packed: Packed, t: float, q: np.ndarray, pairs: np.ndarray, gap: int) -> float:
+    """Return the way (m) left to a row's pair at a pose q (3 nb,) and t (s); infinite for a row of no outlines.
+
+    ``gap``: its row in J; ``pairs`` (o,): those that rows kept.
+    """
+    here = next((row for row in outline_rows(packed) if row.gap == gap), None)
+    if here is None:
+        return math.inf
+    rows = len(packed.ws.phi)
+    phi, gamma, compact = np.zeros((1, rows)), np.zeros((1, rows)), np.zeros((1, rows, 6))
+    q = np.ascontiguousarray(q)[None]
+    tabulate_pairs(packed, packed.drives(np.array([t])), q, np.zeros_like(q), phi, compact, gamma, pairs[None])
+    return float(packed.ws.relative[here.relative, ROOM])
 
 
 def _alike(pairs: np.ndarray, code: np.ndarray) -> np.ndarray:

@@ -17,6 +17,7 @@ import numpy as np
 from mbsd.arrays.curve_branches import CurveBranches
 from mbsd.arrays.laws import pack_laws
 from mbsd.arrays.loads import pack_loads
+from mbsd.arrays.outline_pairs import kept_pairs
 from mbsd.derivatives.driven.differences import accelerate_along, close, combine
 from mbsd.derivatives.driven.tangents import (
     along_directions,
@@ -319,7 +320,8 @@ class _Piece:
             held = (np.ascontiguousarray(part[here]) for part in known)
             nodes = Nodes(*held, rows=self.rows, reach=self.reach[here], slots=slots)
             changes = Own(position, own.velocity, own.acceleration, own.load, some)
-            parts.append(differentiated(self.terms, nodes, changes, *per_scale))
+            with kept_pairs(self.terms.packed, None if along.pairs is None else along.pairs[0]):
+                parts.append(differentiated(self.terms, nodes, changes, *per_scale))
         if len(parts) == 1:
             return parts[0]
         joined_parts = zip(*parts, strict=True)

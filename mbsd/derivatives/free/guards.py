@@ -3,6 +3,7 @@
     gap      a contact that was open is met                        g = Phi
     rate     a way comes to rest, a freewheel locks                g = J v - nu
     slip     friction that held is not enough                      g = mu_s N - |T|
+    room     a pair of outlines comes to its end, as at a tip      g = way of the foot that is left
     user     the value of an event of the user
 
     t' = -(dg + g_p) / (dg/dt)
@@ -19,6 +20,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.arrays.outline_pairs import room_at
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import ModelError
 from mbsd.derivatives.driven.tangents import along_direction, per_scales
@@ -28,13 +30,15 @@ from mbsd.dynamics.events.moment import Moment
 from mbsd.model.event import Happening
 from mbsd.model.joint import ContactKind, Joint
 
-GAP, RATE, SLIP, USER = "gap", "rate", "slip", "user"
+GAP, RATE, SLIP, ROOM, USER = "gap", "rate", "slip", "room", "user"
 REACH = 1e-5
 """Reach of differences along a tangent, in sizes, rad, and parts of the fastest speed."""
 INSTANT = 1e-6
 """Part of the duration by which time goes on for the rate of an event of the user."""
 GRAZING = 1e-9
 """Speed of a scalar, as part of the fastest motion, below which it only touches zero."""
+ENDED = 1e-8
+"""Part of the size within which a pair of outlines is at its end."""
 SLIDES = 1e-6
 """Part of a normal force by which the friction of what slides may be other than the coefficient says."""
 ALIKE = 1e-6
@@ -76,6 +80,7 @@ def guards_of(packed: Packed, along: Along, row: int, struck: Sequence[str]) -> 
     """The scalars that fell through zero between row ``row`` of a simulation and the next; ``struck``: by impacts."""
     met: list[Guard] = []
     others: list[Guard] = []
+    ended: list[Guard] = []
     states = {k: (_state(packed, along, k, row), _state(packed, along, k, row + 1)) for k, _ in contacts_of(packed)}
     beside = tuple(
         (k, float(np.sign(along.lam[row + 1, packed.rows_of(k)[1]])))
@@ -94,7 +99,16 @@ def guards_of(packed: Packed, along: Along, row: int, struck: Sequence[str]) -> 
             others.append(Guard(RATE, joint.name, gap + 1, k))
         elif before == STICKS and after in SLIDING:
             others.append(Guard(SLIP, joint.name, gap + 1, k, beside))
-    return met or others
+        elif before != OPEN and after == OPEN and _has_ended(packed, along, row, gap):
+            ended.append(Guard(ROOM, joint.name, gap, k))
+    return ended or met or others  # what else closes or opens there follows from the end of a pair
+
+
+def _has_ended(packed: Packed, along: Along, row: int, gap: int) -> bool:
+    """Return True if the pair of a row of outlines is at its end."""
+    if along.pairs is None:
+        return False
+    return abs(room_at(packed, along.t[row], along.q[row], along.pairs[row], gap)) <= ENDED * packed.size
 
 
 OPEN, RESTS, STICKS = "open", "rests", "sticks"
@@ -229,6 +243,8 @@ def _changes(
         return (*_changes_of_user(terms, every, here, span, guard.event, tangent), 0.0)
     if guard.what == SLIP:
         return (*_changes_of_friction(terms, every, here, span, guard, tangent), 0.0)
+    if guard.what == ROOM:
+        return (*_changes_of_room(terms, every, here, span, row, tangent), packed.size)
     unit, part = 1.0 / float(packed.row_scale()[row]), "position" if guard.what == GAP else "velocity"
     if guard.what == GAP:
         change = tangent.q[:, 3:] @ packed.spread(terms.rows(here)[2])[0, row]
@@ -265,6 +281,22 @@ def _changes_of_friction(
         changes[p] = (ahead - behind) / (2 * h)
         changes[p] += float(variants.slope(lambda variant: np.array(_friction_left(variant.terms, here, guard))))
     later, sooner = (left(terms, sign * dt, v[0], tangent.pace) for sign in (1.0, -1.0))
+    return changes, (later - sooner) / (2 * dt)
+
+
+def _changes_of_room(
+    terms: Terms, every: Sequence[Variants], here: Along, span: float, row: int, tangent: End
+) -> tuple[np.ndarray, float]:
+    assert here.pairs is not None
+    t, q, pairs, dt = float(here.t[0]), here.q[0], here.pairs[0], INSTANT * max(span, 1e-9)
+    changes = np.zeros(len(every))
+    for p, (dq, dv, variants) in enumerate(zip(tangent.q, tangent.v, every, strict=True)):
+        h = _reach(terms, here, dq, dv)
+        ahead, behind = (room_at(terms.packed, t, q + sign * h * dq, pairs, row) for sign in (1.0, -1.0))
+        changes[p] = (ahead - behind) / (2 * h)
+        changes[p] += float(variants.slope(lambda variant: np.array(room_at(variant.terms.packed, t, q, pairs, row))))
+    step = dt * here.v[0]
+    later, sooner = (room_at(terms.packed, t + s * dt, q + s * step, pairs, row) for s in (1.0, -1.0))
     return changes, (later - sooner) / (2 * dt)
 
 

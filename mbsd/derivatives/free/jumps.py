@@ -12,7 +12,7 @@ Leine, Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems (20
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -20,6 +20,7 @@ import numpy as np
 from mbsd.base.errors import ModelError
 from mbsd.derivatives.driven.tangents import per_scales
 from mbsd.derivatives.free.guards import USER, End, Guard, guards_of, times_moved
+from mbsd.derivatives.free.guards import contacts_of as joints_of
 from mbsd.derivatives.free.indexing import is_index
 from mbsd.derivatives.numbers.terms import Along, Terms
 from mbsd.derivatives.numbers.variants import Variant, Variants, Variation
@@ -107,7 +108,9 @@ class Jump:
         for sign in (1.0, -1.0):
             state = t + sign * h[:, 0] * dt, q + sign * h * dq, v + sign * h * dv
             if plain is None:
-                both.append(np.array([self._after(whole.ready(), *single) for single in zip(*state, strict=True)]))
+                both.append(
+                    np.array([self._after(whole.ready(), whole.terms, *one) for one in zip(*state, strict=True)])
+                )
             else:
                 both.append(bounced(whole.terms, plain, *state, plain.restitution))
         out = (both[0] - both[1]) / (2 * h)
@@ -135,7 +138,7 @@ class Jump:
                 other = prepare_dynamics(m, *whole.span, contacts=True)
             take = other.packed
             take.system = take.system.changed(angle_offset=variant.terms.packed.system.angle_offset)
-            total += weight * self._after(other, t, q, v)
+            total += weight * self._after(other, variant.terms, t, q, v)
         return total / variants.step
 
     def plain_law(self) -> Plain | None:
@@ -160,9 +163,19 @@ class Jump:
         rows = self.whole.stretch_rows(self.along, self.before)
         return Plain(joint, row, rows, float(params.get("restitution", 0.0)) if bounced else 0.0)
 
-    def _after(self, ready: Any, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """(3 nb,) velocities after the impacts of this event."""
-        return velocities_after(ready, t, q, v, self.impacts)
+    def _after(self, ready: Any, terms: Terms, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """(3 nb,) velocities after the impacts of this event, by which contacts that go on to rest stay at rest."""
+        after = velocities_after(ready, t, q, v, self.impacts)
+        here = self.along.take(slice(self.before, self.before + 2))
+        resting = [k for k, joint in joints_of(terms.packed) if joint.name not in self.impacts]
+        if self.ends or here.held is None or not any(here.held[:, terms.packed.first_row[k]].all() for k in resting):
+            return after
+        rows = self.whole.stretch_rows(self.along, self.before + 1)
+        state = replace(here.take(slice(1, 2)), t=np.array([t]), q=q[None], v=after[None])
+        jac, rates = terms.packed.spread(terms.rows(state)[2])[0][rows], terms.left(state).velocity[0, rows]
+        matrix = np.block([[np.diag(terms.inertia[3:]), jac.T], [jac, np.zeros((len(rows), len(rows)))]])
+        after[3:] -= np.linalg.solve(matrix, np.append(np.zeros(jac.shape[1]), rates))[: jac.shape[1]]
+        return after
 
 
 def fill_by_numbers(whole: Whole, along: Along, jumps: Sequence[Jump]) -> None:

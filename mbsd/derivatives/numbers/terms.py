@@ -47,6 +47,8 @@ class Along:
     """(T, 3 nb) load whose work the rows of redundant joints share; see tangents.py."""
     held: np.ndarray | None = None
     """(T, m) rows that hold, of a simulation."""
+    pairs: np.ndarray | None = None
+    """(T, o) pairs of outlines that rows kept, of a simulation."""
 
     def parts(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """q, v and a."""
@@ -66,8 +68,9 @@ class Along:
         times = len(q) // len(self.t)
         if whole:
             return self.tiled(times).moved(q, v)
-        met = [None if part is None else np.concatenate([part] * times) for part in (self.states, self.approached)]
-        return Along(np.tile(self.t, times), q, v, self.a, self.lam, *met)
+        known = {"states": self.states, "approached": self.approached, "pairs": self.pairs}
+        met = {key: np.concatenate([part] * times) for key, part in known.items() if part is not None}
+        return Along(np.tile(self.t, times), q, v, self.a, self.lam, **met)
 
     def take(self, at: slice | np.ndarray) -> Along:
         """Some of its times."""
@@ -163,7 +166,8 @@ class Terms:
         phi, gamma = np.zeros((2, count, rows))
         compact = np.empty((count, rows, 6))
         q, v = np.ascontiguousarray(along.q), np.ascontiguousarray(along.v)
-        tabulate_along(packed, packed.drives(along.t) if drives is None else drives, q, v, phi, compact, gamma)
+        drives = packed.drives(along.t) if drives is None else drives
+        tabulate_along(packed, drives, q, v, phi, compact, gamma, along.pairs)
         return phi, gamma, compact
 
     def applied(self, along: Along) -> np.ndarray:
@@ -217,7 +221,8 @@ def terms_of(
 def along_of(sol: Solution) -> Along:
     """A solution as arrays."""
     q, v, a = (np.ascontiguousarray(part.reshape(len(sol.t), -1)) for part in (sol.q, sol.v, sol.a))
-    return Along(sol.t if sol.law_times is None else sol.law_times, q, v, a, sol.lam, sol.states, sol.approached)
+    times = sol.t if sol.law_times is None else sol.law_times
+    return Along(times, q, v, a, sol.lam, sol.states, sol.approached, pairs=sol.pairs)
 
 
 def rows_of(sol: Solution, rows: np.ndarray) -> Solution:

@@ -58,14 +58,14 @@ class Bolt:
         )
 
 
-def bolt(wish: float, longest: float) -> Bolt:
-    """Return the standard screw next to a diameter ``wish`` and at most so long.
+def bolt(wish: float, shortest: float, longest: float) -> Bolt:
+    """Return the standard screw next to a diameter ``wish`` with a length between these.
 
     Without one near, a screw of that diameter is to be made.
     """
     nominal = min(SOCKET, key=lambda size: abs(size - wish))
     length = screw_length(nominal, longest)
-    if length is not None and length > 0.7 * longest and abs(nominal - wish) < ODD * wish:
+    if length is not None and length > max(shortest, 0.7 * longest) and abs(nominal - wish) < ODD * wish:
         return Bolt(socket_screw(nominal, length), nominal, length, head_diameter(nominal), screw_name(nominal, length))
     plain, scale = socket_screw(5.0, 5.0 * longest / wish), wish / 5.0
     return Bolt(plain.newObject([plain.val().scale(scale)]), wish, longest, head_diameter(5.0) * scale)

@@ -309,6 +309,8 @@ SCREW = 5.0
 """Wished diameter of the screws (units)."""
 INTO = 0.6
 """How far they go into a plate, as a part of its thickness."""
+LEAST_INTO = 0.4
+"""Part of that which a screw of a standard length may go in: of a machine of 4 m none is long enough."""
 BEYOND = 0.8
 """Length of a blind hole beyond the end of its screw (units)."""
 PAD = (7.0, 2.0)
@@ -383,8 +385,9 @@ class Stand:
 
     def _bolt(self, wish: float, through: float, into: float, seat: float) -> Bolt:
         """Return a screw through so much matter and ``into`` what is behind, its head below the face."""
+        shortest = through - 1.1 * wish + seat + LEAST_INTO * into
         longest = through - 1.1 * wish + seat + 0.85 * into
-        return bolt(wish * self.ratio, longest * self.ratio).at_scale(1.0 / self.ratio)
+        return bolt(wish * self.ratio, shortest * self.ratio, longest * self.ratio).at_scale(1.0 / self.ratio)
 
     def _pads(self, own: Dimensions) -> list[Solid]:
         unit, (x, y, z) = self.plate.unit, own.foot

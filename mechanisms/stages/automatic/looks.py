@@ -125,6 +125,8 @@ class Cylinder(Feature):
     slide: Slide
     side: float
     """1 if the crown is ahead along the slide's line, -1 if behind."""
+    crown: float
+    """How far the piston's plate reaches towards the head from its middle."""
 
     @property
     def what(self) -> str:
@@ -141,7 +143,7 @@ class Cylinder(Feature):
     def reach(self) -> tuple[float, float]:
         """Where walls begin and where they meet the head, along the line."""
         low, high = self.slide.travel if self.side > 0 else (-self.slide.travel[1], -self.slide.travel[0])
-        return low - HALF_LENGTH + SKIRT, high + HALF_LENGTH + RAIL / 2 + DEAD
+        return low - HALF_LENGTH + SKIRT, high + max(HALF_LENGTH + RAIL / 2, self.crown) + DEAD
 
     def inner(self, layout: Layout) -> float:
         """Return half of the bore."""
@@ -189,7 +191,10 @@ class Cylinder(Feature):
 
 
 def _piston(body: str, layout: Layout) -> list[Feature]:
-    """Return a piston and its cylinder, for a body that slides on ground by itself; else nothing."""
+    """Return a piston and its cylinder, for a body that slides on ground by itself; else nothing.
+
+    A body with a place beside the bore, such as the arm of a crosshead, would not fit between the walls.
+    """
     slides = [slide for slide in layout.select(Slide) if slide.block == body and slide.rail == "ground"]
     if len(slides) != 1 or slides[0].host or slides[0].guests or any(end is not None for end in slides[0].ends):
         return []
@@ -203,6 +208,10 @@ def _piston(body: str, layout: Layout) -> list[Feature]:
             beyond += [layout.seen(other, place, body).mean(axis=0) for place in places]
     away = float(np.mean([(u - x) * c + (v - y) * s for u, v in beyond])) if beyond else -1.0
     side = -1.0 if away > 0 else 1.0
+    own = [((a.x - x) * c + (a.y - y) * s, (a.y - y) * c - (a.x - x) * s, a.radius) for a in _own_anchors(body, layout)]
+    if any(abs(aside) + radius > HALF_BORE for _, aside, radius in own):
+        return []
+    crown = max([side * along + radius for along, _, radius in own], default=0.0)
     half = [(-HALF_LENGTH, HALF_BORE - 1.0), (-HALF_LENGTH + 1.0, HALF_BORE)]
     for ring in reversed(RINGS):
         low = HALF_LENGTH - ring - RING / 2
@@ -211,7 +220,7 @@ def _piston(body: str, layout: Layout) -> list[Feature]:
     local = [*half, *((u, -v) for u, v in reversed(half))]
     points = np.array([(x + side * u * c - v * s, y + side * u * s + v * c) for u, v in local])
     wire = cq.Wire.makePolygon([cq.Vector(float(u), float(v), 0.0) for u, v in points], close=True)
-    return [Look(body, "piston", wire, points, (x, y, HALF_BORE - GROOVE)), Cylinder(slide, side)]
+    return [Look(body, "piston", wire, points, (x, y, HALF_BORE - GROOVE)), Cylinder(slide, side, crown)]
 
 
 # Wheels: a disc about a pin, with a pocket between hub and rim; a tyre has a ring of rubber round it.

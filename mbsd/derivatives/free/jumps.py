@@ -3,9 +3,10 @@
     t' = -(dg + g_p) / (dg/dt)                   of the scalar g that falls through zero (guards.py)
     y_-' + f_- t'   is mapped by the event's own law, R,  to   y_+' + f_+ t'
 
-Impacts are mapped by differences of the law that the simulation itself uses, in states beside the one before. Where a
-contact begins to stick or to slide, or turns round, velocities go on and accelerations jump. What opens or is only
-noted has neither a jump of velocities nor of accelerations. Source: Bernard, Bentsman, Int. J. Control 63 (1996);
+Impacts are mapped by differences of the law that the simulation itself uses, in states beside the one before; contacts
+that rest before and after it stay at rest. Where a contact begins to stick or to slide, turns round, or comes to the
+end of an outline's face, velocities go on and accelerations jump. What opens as its force vanishes, or is only noted,
+has neither a jump of velocities nor of accelerations. Source: Bernard, Bentsman, Int. J. Control 63 (1996);
 Leine, Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems (2004) (saltation).
 """
 

@@ -163,8 +163,8 @@ def stand(numbers, relative, run, f, choice):
             near = ROUNDING * numbers[f + SPAN]
             if relative[FOOT] < -near or relative[FOOT] > numbers[f + SPAN] + near:
                 gap += numbers[NOWHERE]
-            if gap < least:
-                least = gap
+            if abs(gap) < least:  # where a body is thin its other side faces, too, and is deeper
+                least = abs(gap)
                 best = e
             if kind == LINE:
                 break
@@ -288,21 +288,63 @@ def _follow(numbers, relative, run, feature):
         came_from = numbers[feature_at(numbers, before) + LINKED] != 0.0
         room = math.inf
         scale = max(_scale(numbers, f), radius)
-        if goes_on and not touches(numbers, relative, after):
-            room = (span - foot) * scale
-        elif goes_on and foot > span and way >= 0 and count > 1:
+        if count > 1 and goes_on and foot > span and way >= 0 and _touches_next(numbers, relative, run, after):
             way = 1
             feature = after
             continue
-        if came_from and not touches(numbers, relative, before):
-            room = min(room, foot * scale)
-        elif came_from and foot < 0.0 and way <= 0 and count > 1:
+        if count > 1 and came_from and foot < 0.0 and way <= 0 and _touches_next(numbers, relative, run, before):
             way = -1
             feature = before
             continue
+        gap = stand(numbers, relative, run, f, FACES)
+        if goes_on and not touches(numbers, relative, after):
+            room = (span - foot) * scale
+        if came_from and not touches(numbers, relative, before):
+            room = min(room, foot * scale)
+        if radius > 0.0 and numbers[f + KIND] == CONVEX and numbers[f + SIZE] == 0.0:
+            room = min(room, _room_on_run(numbers, relative, run, f))
         relative[ROOM] = room
         break
     return feature, gap
+
+
+@internal
+def _touches_next(numbers, relative, run, feature):
+    """Return True if a run may touch a feature beside that on which it was, by the arc that faces this one."""
+    stand(numbers, relative, run, feature_at(numbers, feature), FACES)
+    return touches(numbers, relative, feature)
+
+
+@internal
+def _room_on_run(numbers, relative, run, f):
+    """Return the way left (m) on an arc of a run for a corner of the other outline, up to where no other arc follows.
+
+    Beyond is a corner, which meets a corner at no place, or a line, which is of another row.
+    """
+    row = run_at(numbers, run)
+    first = int(numbers[row + FIRST])
+    count = int(numbers[row + END]) - first
+    closed = numbers[row + CLOSED] != 0.0
+    c = math.cos(relative[A])
+    s = math.sin(relative[A])
+    wx = numbers[f + FEATURE_X] - relative[X]
+    wy = numbers[f + FEATURE_Y] - relative[Y]
+    room = math.inf
+    for k in range(count):
+        e = _element_at(numbers, first + k)
+        dx = c * wx + s * wy - numbers[e + AT_X]
+        dy = c * wy - s * wx - numbers[e + AT_Y]
+        if numbers[e + RADIUS] == 0.0 or not _faces(numbers, e, dx, dy):
+            continue
+        turn = _turn(numbers, e, dx, dy)
+        before = _element_at(numbers, first + (k + count - 1) % count)
+        after = _element_at(numbers, first + (k + 1) % count)
+        if (k == 0 and not closed) or numbers[before + RADIUS] == 0.0:
+            room = min(room, numbers[e + RADIUS] * turn)
+        if (k == count - 1 and not closed) or numbers[after + RADIUS] == 0.0:
+            span = _turn(numbers, e, numbers[e + U1X], numbers[e + U1Y])
+            room = min(room, numbers[e + RADIUS] * (span - turn))
+    return room
 
 
 @internal

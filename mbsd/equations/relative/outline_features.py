@@ -352,7 +352,7 @@ def search(numbers, relative, first, end, skip_run, skip, skip_foot, within):
     """Return run, feature and gap of the nearest pair of runs ``first`` to ``end``, -1 without any ``within`` (m).
 
     Where run ``skip_run`` has a place on feature ``skip``, that is skipped. Circles around runs and features tell which
-    pairs are too far apart; the feature whose circle is nearest is looked at first and narrows that.
+    pairs are farther apart, or deeper, than one that is known; the feature whose circle is nearest is looked at first.
     """
     count = int(numbers[FEATURES])
     c = math.cos(relative[A])
@@ -372,11 +372,11 @@ def search(numbers, relative, first, end, skip_run, skip, skip_foot, within):
             if away < nearest and not (run == skip_run and feature == skip):
                 nearest = away
                 likely = feature
-        if nearest > max(least, 0.0) + numbers[MORE]:
+        if nearest > abs(least) + numbers[MORE]:
             continue
         limit, _ = _pair_gap(numbers, relative, run, likely, skip_run, skip, skip_foot, least)
         for feature in range(count):
-            near = max(min(limit, least), 0.0) + numbers[MORE]
+            near = abs(min(limit, least)) + numbers[MORE]
             if _clear_of(numbers, feature_at(numbers, feature), row, mx, my) > near:
                 continue
             if run == skip_run and feature == skip:

@@ -110,7 +110,7 @@ class Jump:
             state = t + sign * h[:, 0] * dt, q + sign * h * dq, v + sign * h * dv
             if plain is None:
                 both.append(
-                    np.array([self._after(whole.ready(), whole.terms, *one) for one in zip(*state, strict=True)])
+                    np.array([self._after(whole.ready(), whole.terms, *each) for each in zip(*state, strict=True)])
                 )
             else:
                 both.append(bounced(whole.terms, plain, *state, plain.restitution))

@@ -83,7 +83,7 @@ def tabulate_pairs(
 
 @contextmanager
 def kept_pairs(packed: Packed, code: np.ndarray | None) -> Iterator[None]:
-    """Let rows of outlines keep pairs ``code`` (o,) in what is evaluated within; None: leave them as they are."""
+    """Let rows of outlines keep pairs ``code`` (o,) in what is evaluated within; None: as they are."""
     rows, relative = [] if code is None else pair_rows(packed), packed.ws.relative
     before = relative[rows, LAST].copy()
     relative[rows, LAST] = code if rows else before
@@ -94,9 +94,9 @@ def kept_pairs(packed: Packed, code: np.ndarray | None) -> Iterator[None]:
 
 
 def room_at(packed: Packed, t: float, q: np.ndarray, pairs: np.ndarray, gap: int) -> float:
-    """Return the way (m) left to a row's pair at a pose q (3 nb,) and t (s); infinite for a row of no outlines.
+    """Return the way (m) left to a row's pair at a pose q (3 nb,) and t (s).
 
-    ``gap``: its row in J; ``pairs`` (o,): those that rows kept.
+    ``gap``: its row in J; ``pairs`` (o,): those that rows kept. Infinite for a row of no outlines.
     """
     here = next((row for row in outline_rows(packed) if row.gap == gap), None)
     if here is None:

@@ -165,7 +165,7 @@ class Jump:
         return Plain(joint, row, rows, float(params.get("restitution", 0.0)) if bounced else 0.0)
 
     def _after(self, ready: Any, terms: Terms, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """(3 nb,) velocities after the impacts of this event, by which contacts that go on to rest stay at rest."""
+        """(3 nb,) velocities after the impacts of this event; contacts that go on to rest stay at rest."""
         after = velocities_after(ready, t, q, v, self.impacts)
         here = self.along.take(slice(self.before, self.before + 2))
         resting = [k for k, joint in joints_of(terms.packed) if joint.name not in self.impacts]

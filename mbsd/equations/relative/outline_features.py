@@ -310,14 +310,14 @@ def _follow(numbers, relative, run, feature):
 
 @internal
 def _touches_next(numbers, relative, run, feature):
-    """Return True if a run may touch a feature beside that on which it was, by the arc that faces this one."""
+    """Return True if a run may touch the feature beside its own, by the arc that faces that one."""
     stand(numbers, relative, run, feature_at(numbers, feature), FACES)
     return touches(numbers, relative, feature)
 
 
 @internal
 def _room_on_run(numbers, relative, run, f):
-    """Return the way left (m) on an arc of a run for a corner of the other outline, up to where no other arc follows.
+    """Return the way left (m) on an arc of a run, for a corner, up to where no other arc follows.
 
     Beyond is a corner, which meets a corner at no place, or a line, which is of another row.
     """
@@ -349,10 +349,11 @@ def _room_on_run(numbers, relative, run, f):
 
 @internal
 def search(numbers, relative, first, end, skip_run, skip, skip_foot, within):
-    """Return run, feature and gap of the nearest pair of runs ``first`` to ``end``, -1 without any ``within`` (m).
+    """Return run, feature and gap of the nearest pair ``within`` (m), -1 without any.
 
-    Where run ``skip_run`` has a place on feature ``skip``, that is skipped. Circles around runs and features tell which
-    pairs are farther apart, or deeper, than one that is known; the feature whose circle is nearest is looked at first.
+    It is one of runs ``first`` to ``end``. Where run ``skip_run`` has a place on feature ``skip``, that is skipped.
+    Circles around runs and features tell which pairs are farther apart, or deeper, than one that is known; the feature
+    whose circle is nearest is looked at first.
     """
     count = int(numbers[FEATURES])
     c = math.cos(relative[A])

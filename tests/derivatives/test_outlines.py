@@ -36,7 +36,7 @@ def differences(m: Mechanism, labels: list[str], name: str, step: float, times: 
         (ratchet, 0.16, "pusher.mass", 1e-5),
         (ratchet, 0.16, "pusher_pin.x", 1e-7),
     ],
-    ids=str,
+    ids=lambda value: value.__name__.split(".")[1] if hasattr(value, "__name__") else str(value),
 )
 def test_derivatives_go_through_the_ends_of_faces_and_impacts_passed_on(
     machine: Any, end: float, name: str, step: float

@@ -29,9 +29,10 @@ class Params:
 def build(p: Params) -> Mechanism:
     """The crank turns evenly; its driver takes what the steam gives."""
     m = Mechanism("walschaerts")
-    x, link_x, link_y, foot, top, hang = -p.rod - p.crank, -0.12, 0.09, 0.055, 0.022, 0.065
+    x, link_x, link_y, foot, top, hang, sling = -p.rod - p.crank, -0.12, 0.09, 0.055, 0.022, 0.065, 0.04
     to_foot, length = hypot(link_x, link_y - foot), hypot(x - link_x, p.gear)
-    ahead, way = atan2(link_y - foot, link_x) - pi / 2, degrees(atan2(p.gear, x - link_x))
+    ahead, slope = atan2(link_y - foot, link_x) - pi / 2, degrees(atan2(p.gear, x - link_x))
+    low = p.gear * (1 - sling / (link_x - x))  # of the sling below the trunnion
     crank, rod, crosshead = m.bar("crank", p.crank), m.bar("rod", p.rod), m.body("crosshead")
     piston_rod, piston = m.bar("piston_rod", p.stem), m.body("piston")
     eccentric_rod, link = m.bar("eccentric_rod", hypot(to_foot, p.eccentric)), m.body("link")
@@ -49,8 +50,8 @@ def build(p: Params) -> Mechanism:
     m.revolute("trunnion", m.ground.at(link_x, link_y), link.at(0, 0))
     slot = [(x - link_x + sqrt(length**2 - y**2), y) for y in (0.0075 * k for k in range(-6, 7))]
     m.point_on_curve("die", link.at(0, 0), radius_rod.start, slot)
-    m.revolute("lift", m.ground.at(link_x - 0.04, link_y + hang - 0.69 * p.gear), hanger.start)
-    m.revolute("sling", hanger.end, radius_rod.at(0.04, 0))
+    m.revolute("lift", m.ground.at(link_x - sling, link_y + hang - low), hanger.start)
+    m.revolute("sling", hanger.end, radius_rod.at(sling, 0))
     m.revolute("front", radius_rod.end, lever.at(0, 0))
     m.revolute("drop", lever.at(0, -0.14), union.end)
     m.revolute("arm", crosshead.at(0, -0.05), union.start)
@@ -61,7 +62,7 @@ def build(p: Params) -> Mechanism:
         lap=p.lap, rod=0.01,
     )  # fmt: skip
     m.start_near(crank=0, rod=180, crosshead=(p.crank - p.rod, 0, 0), piston_rod=180, eccentric_rod=164)
-    m.start_near(piston=(p.crank - p.rod - p.stem, 0, 0), link=(link_x, link_y, 0), radius_rod=way, hanger=-90)
+    m.start_near(piston=(p.crank - p.rod - p.stem, 0, 0), link=(link_x, link_y, 0), radius_rod=slope, hanger=-90)
     m.start_near(lever=(x, link_y, 10), union=180, valve=(x, link_y + top, 0))
     m.drive_angle("load", crank, constant_rate(p.speed))
     return m

@@ -21,7 +21,7 @@ import numpy as np
 from mbsd.base.errors import ModelError
 from mbsd.derivatives.driven.tangents import per_scales
 from mbsd.derivatives.free.guards import USER, End, Guard, guards_of, times_moved
-from mbsd.derivatives.free.guards import contacts_of as joints_of
+from mbsd.derivatives.free.guards import contacts_of as packed_contacts
 from mbsd.derivatives.free.indexing import is_index
 from mbsd.derivatives.numbers.terms import Along, Terms
 from mbsd.derivatives.numbers.variants import Variant, Variants, Variation
@@ -168,7 +168,7 @@ class Jump:
         """(3 nb,) velocities after the impacts of this event; contacts that go on to rest stay at rest."""
         after = velocities_after(ready, t, q, v, self.impacts)
         here = self.along.take(slice(self.before, self.before + 2))
-        resting = [k for k, joint in joints_of(terms.packed) if joint.name not in self.impacts]
+        resting = [k for k, joint in packed_contacts(terms.packed) if joint.name not in self.impacts]
         if self.ends or here.held is None or not any(here.held[:, terms.packed.first_row[k]].all() for k in resting):
             return after
         rows = self.whole.stretch_rows(self.along, self.before + 1)

@@ -60,7 +60,7 @@ def force(numbers, state, out):
                     place_end = end
                 if gap >= 0.0:
                     break
-                within = 0.0  # of a second place only that it pushes matters
+                within = -gap  # a second place is no deeper than the first
             if numbers[features.SECOND] == 0.0:
                 break
             skip_run = run

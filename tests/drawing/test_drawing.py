@@ -252,6 +252,17 @@ def test_an_outline_keeps_its_distance_from_every_point(points: list[tuple[float
     assert reach.max() <= 0.5 + 1e-9  # arcs end on the corners; straight parts run between them
 
 
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+def test_an_outline_goes_once_around_points_on_a_line(size: float) -> None:
+    rng = np.random.default_rng(1)
+    for _ in range(500):  # rounding lifts a point off the line in some places only
+        angle, parts = rng.uniform(0, 2 * math.pi), np.append([0.0, 1.0], rng.uniform(0, 1, 3))
+        places = parts[:, None] * [math.cos(angle), math.sin(angle)] + rng.uniform(-1, 1, 2)
+        outline = rounded(size * places, size)
+        length = np.hypot(*(np.roll(outline, -1, axis=0) - outline).T).sum()
+        assert length == pytest.approx((2 + 2 * math.pi) * size, rel=0.01)
+
+
 @pytest.mark.parametrize(
     ("directions", "side"),
     [

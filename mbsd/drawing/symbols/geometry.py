@@ -125,16 +125,21 @@ def geneva_radius(joint: Joint, pose: Pose) -> float:
 ARC_STEP = math.radians(10)
 
 
+FLAT = 1e-9
+"""Height of a corner over its neighbours' line, as a part of the extent, below which it is rounding."""
+
+
 def hull(points: np.ndarray) -> np.ndarray:
     """Return (k, 2) corners of the convex hull, counter-clockwise; one or two points stay as they are."""
     unique = sorted({(float(x), float(y)) for x, y in points})
     if len(unique) < 3:
         return np.array(unique)
+    flat = FLAT * float(np.ptp(points, axis=0).max()) ** 2
 
     def chain(ordered: list[tuple[float, float]]) -> list[tuple[float, float]]:
         out: list[tuple[float, float]] = []
         for p in ordered:
-            while len(out) > 1 and _turn(out[-2], out[-1], p) <= 0:
+            while len(out) > 1 and _turn(out[-2], out[-1], p) <= flat:
                 out.pop()
             out.append(p)
         return out[:-1]

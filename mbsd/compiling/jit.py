@@ -93,8 +93,15 @@ class _Shared(_Kernel):
         """Return the result of the first call with arguments of some types."""
         overload = self._face._compile_for_args(*arguments, **named)
         for kinds, made in self._face.overloads.items():
-            self._insert([kind._code for kind in kinds], made.entry_point)
+            if kinds not in self._known:  # numba would find two alike, choose neither, and ask here in each call
+                self._known.add(kinds)
+                self._insert([kind._code for kind in kinds], made.entry_point)
         return overload
+
+    @cached_property
+    def _known(self) -> set[tuple[Any, ...]]:
+        """Return the signatures that calls from Python find by themselves."""
+        return set()
 
     def add_overload(self, cres: Any) -> None:
         """Add what was compiled or loaded; Python does not call it."""

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
-from mbsd.compiling.jit import COMPILED, apart, internal, kernel, lazy
+from mbsd.compiling.jit import COMPILED, apart, internal, kernel, lazy, shared
 
 
 @internal
@@ -38,3 +39,20 @@ def test_numbers_written_out_make_no_copies() -> None:
     assert len(scaled.signatures) == 1
     assert len(added.signatures) <= 1  # none where the callers are read from the cache
     assert len(later.kernel.signatures) == 1
+
+
+@shared
+def doubled(x):
+    """Twice the first number."""
+    return 2.0 * x[0]
+
+
+@pytest.mark.skipif(not COMPILED, reason="nothing is compiled")
+def test_calls_find_a_kernel_at_once_however_many_types_there_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    arrays = [np.full(2, 3.0), np.full((2, 2), 3.0)[:, 0], np.full(2, 3)]
+    assert [doubled(x) for x in arrays] == [6.0] * 3
+    asked: list[object] = []
+    ask = type(doubled)._compile_for_args
+    monkeypatch.setattr(type(doubled), "_compile_for_args", lambda *given: asked.append(given) or ask(*given))
+    assert [doubled(x) for x in arrays] == [6.0] * 3
+    assert not asked

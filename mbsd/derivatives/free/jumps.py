@@ -174,8 +174,7 @@ class Jump:
         rows = self.whole.stretch_rows(self.along, self.before + 1)
         state = replace(here.take(slice(1, 2)), t=np.array([t]), q=q[None], v=after[None])
         jac, rates = terms.packed.spread(terms.rows(state)[2])[0][rows], terms.left(state).velocity[0, rows]
-        matrix = np.block([[np.diag(terms.inertia[3:]), jac.T], [jac, np.zeros((len(rows), len(rows)))]])
-        after[3:] -= np.linalg.solve(matrix, np.append(np.zeros(jac.shape[1]), rates))[: jac.shape[1]]
+        after[3:] -= solve_with_rows(terms, jac[None], np.zeros((1, jac.shape[1])), rates[None])[0]
         return after
 
 
@@ -208,18 +207,21 @@ def bounced(terms: Terms, plain: Plain, t: np.ndarray, q: np.ndarray, v: np.ndar
     """(S, 3 nb) velocities after, v - a (1 + e) J v / (J a), a: what an impulse along J makes of velocities."""
     state = Along(t, q, v, v, np.zeros((len(t), len(terms.packed.ws.phi))))
     jac = terms.packed.spread(terms.rows(state)[2])
-    rows, n, count = jac[:, plain.rows], jac.shape[2], len(plain.rows)
-    matrix = np.zeros((len(t), n + count, n + count))
-    matrix[:, :n, :n] = np.diag(terms.inertia[3:])
-    matrix[:, :n, n:], matrix[:, n:, :n] = rows.transpose(0, 2, 1), rows
-    push = np.zeros((len(t), n + count, 1))
-    push[:, :n, 0] = jac[:, plain.row]
-    answer = np.linalg.solve(matrix, push)[:, :n, 0]
+    answer = solve_with_rows(terms, jac[:, plain.rows], jac[:, plain.row], np.zeros((len(t), len(plain.rows))))
     rate = (jac[:, plain.row] * v[:, 3:]).sum(axis=1)
     size = (1.0 + restitution) * rate / (jac[:, plain.row] * answer).sum(axis=1)
     out = v.copy()
     out[:, 3:] -= size[:, None] * answer
     return out
+
+
+def solve_with_rows(terms: Terms, rows: np.ndarray, push: np.ndarray, rates: np.ndarray) -> np.ndarray:
+    """Return x (S, n) of M x + R^T m = push (S, n), R x = rates (S, r), for rows R (S, r, n)."""
+    n, count = rows.shape[2], rows.shape[1]
+    matrix = np.zeros((len(rows), n + count, n + count))
+    matrix[:, :n, :n] = np.diag(terms.inertia[3:])
+    matrix[:, :n, n:], matrix[:, n:, :n] = rows.transpose(0, 2, 1), rows
+    return np.linalg.solve(matrix, np.concatenate([push, rates], axis=1)[..., None])[:, :n, 0]
 
 
 def jumps_of(whole: Whole, sol: Solution, along: Along, edges: list[int]) -> list[Jump]:

@@ -43,6 +43,8 @@ def pytest_configure(config: pytest.Config) -> None:
     plugins.register(Order())
     if hasattr(config, "workerinput"):  # a process of xdist, whose results the first process shows
         return
+    if plugins.hasplugin("xdist"):  # where one process ends, those left do the rest: a new one would wait for ever
+        config.option.maxworkerrestart = "0"
     plugins.register(Failures(config))
     if config.getoption("--record-seconds"):
         plugins.register(Recording())

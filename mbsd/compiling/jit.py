@@ -24,6 +24,7 @@ from typing import Any
 import numba
 from numba.core import sigutils, types
 from numba.core.ccallback import CFunc
+from numba.core.compiler_lock import global_compiler_lock
 from numba.core.dispatcher import Dispatcher
 from numba.core.registry import CPUDispatcher
 
@@ -92,10 +93,11 @@ class _Shared(_Kernel):
     def _compile_for_args(self, *arguments: Any, **named: Any) -> Any:
         """Return the result of the first call with arguments of some types."""
         overload = self._face._compile_for_args(*arguments, **named)
-        for kinds, made in self._face.overloads.items():
-            if kinds not in self._known:  # numba would find two alike, choose neither, and ask here in each call
-                self._known.add(kinds)
-                self._insert([kind._code for kind in kinds], made.entry_point)
+        with global_compiler_lock:
+            for kinds, made in self._face.overloads.items():
+                if kinds not in self._known:  # numba would find two alike, choose neither, and ask here in each call
+                    self._known.add(kinds)
+                    self._insert([kind._code for kind in kinds], made.entry_point)
         return overload
 
     @cached_property
